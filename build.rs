@@ -1,0 +1,3 @@
+//! Finds OpenVDB and compiles the bridge.
+
+fn main() {}

@@ -1,0 +1,198 @@
+//! Which nodes are inside the offset solid: the combinatorial part of the band.
+//!
+//! A [`SignField`] holds one 512-bit mask per leaf. Besides the leaves of the band it holds a ring of
+//! uniform leaves around them (all 26 neighbours that the band lacks), so that every cell with a
+//! sign change, and every corner of such a cell, lies in some leaf of the field. Nobody has to ask
+//! for the sign of a node outside it.
+
+use super::lattice::{Axis, Ijk, LEAF_DIM};
+use std::collections::HashMap;
+
+/// The number of a leaf within its [`SignField`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct LeafId(pub u32);
+
+/// A 512-bit mask of a leaf's nodes: word x, bit 8 y + z.
+pub type LeafMask = [u64; 8];
+
+/// Signs of the nodes of a set of leaves, with neighbours.
+#[derive(Clone, Debug, Default)]
+pub struct SignField {
+    origins: Vec<Ijk>,
+    inside: Vec<LeafMask>,
+    /// Per leaf the neighbour at offset (dx, dy, dz), number 9 (dx+1) + 3 (dy+1) + (dz+1).
+    neighbours: Vec<[u32; 27]>,
+}
+
+const NONE: u32 = u32::MAX;
+
+fn neighbour_slot(delta: [i32; 3]) -> usize {
+    (9 * (delta[0] + 1) + 3 * (delta[1] + 1) + delta[2] + 1) as usize
+}
+
+fn neighbour_origin(origin: Ijk, slot: usize) -> Ijk {
+    let s = slot as i32;
+    origin + Ijk([s / 9 - 1, s / 3 % 3 - 1, s % 3 - 1].map(|d| d * LEAF_DIM))
+}
+
+impl SignField {
+    /// The field of the leaves given by `origins` and `inside` masks, in any order, no origin twice.
+    /// `missing` is asked once for all neighbouring leaves that the band lacks (a sorted list of their
+    /// origins): whether each is inside as a whole. Such a leaf is uniform in every band, since a node
+    /// next to a sign change is valid ([LW11] Definition 1) and thus in a leaf of the band.
+    pub fn new<E>(
+        origins: &[Ijk],
+        inside: &[LeafMask],
+        missing: impl FnOnce(&[Ijk]) -> Result<Vec<bool>, E>,
+    ) -> Result<Self, E> {
+        assert_eq!(origins.len(), inside.len(), "one mask for each leaf");
+        let known: std::collections::HashSet<Ijk> = origins.iter().copied().collect();
+        let mut ring: Vec<Ijk> = origins
+            .iter()
+            .flat_map(|&o| (0..27).map(move |s| neighbour_origin(o, s)))
+            .filter(|o| !known.contains(o))
+            .collect();
+        ring.sort_unstable();
+        ring.dedup();
+        let ring_inside = missing(&ring)?;
+        assert_eq!(ring.len(), ring_inside.len(), "one sign for each missing leaf");
+
+        let mut all: Vec<(Ijk, LeafMask)> = origins.iter().copied().zip(inside.iter().copied()).collect();
+        all.extend(ring.into_iter().zip(ring_inside.into_iter().map(|i| if i { [!0; 8] } else { [0; 8] })));
+        all.sort_unstable_by_key(|&(origin, _)| origin);
+        let (origins, inside): (Vec<Ijk>, Vec<LeafMask>) = all.into_iter().unzip();
+        let number: HashMap<Ijk, u32> = origins.iter().zip(0..).map(|(&o, n)| (o, n)).collect();
+        assert_eq!(number.len(), origins.len(), "a leaf was given twice");
+        let neighbours = origins
+            .iter()
+            .map(|&o| std::array::from_fn(|s| number.get(&neighbour_origin(o, s)).copied().unwrap_or(NONE)))
+            .collect();
+        Ok(SignField { origins, inside, neighbours })
+    }
+
+    /// The number of leaves, ring included.
+    pub fn len(&self) -> usize {
+        self.origins.len()
+    }
+
+    /// Whether there is no leaf at all.
+    pub fn is_empty(&self) -> bool {
+        self.origins.is_empty()
+    }
+
+    /// All leaves, sorted by origin.
+    pub fn leaves(&self) -> impl ExactSizeIterator<Item = LeafId> + Clone + use<> {
+        (0..self.origins.len() as u32).map(LeafId)
+    }
+
+    /// The lowest node of a leaf.
+    pub fn origin(&self, leaf: LeafId) -> Ijk {
+        self.origins[leaf.0 as usize]
+    }
+
+    /// The nodes of a leaf that are inside the offset solid (phi < 0).
+    pub fn inside(&self, leaf: LeafId) -> &LeafMask {
+        &self.inside[leaf.0 as usize]
+    }
+
+    /// The neighbouring leaf `delta` leaves away, each component -1, 0 or 1; `None` beyond the ring.
+    pub fn neighbour(&self, leaf: LeafId, delta: [i32; 3]) -> Option<LeafId> {
+        let n = self.neighbours[leaf.0 as usize][neighbour_slot(delta)];
+        (n != NONE).then_some(LeafId(n))
+    }
+
+    /// The leaf and the number in it of the node `local`, given in nodes from the origin of `leaf`,
+    /// each component in -8..16. `None` beyond the ring.
+    pub fn locate(&self, leaf: LeafId, local: [i32; 3]) -> Option<(LeafId, usize)> {
+        let neighbour = self.neighbour(leaf, local.map(|x| x >> 3))?;
+        Some((neighbour, Ijk(local).number_in_leaf()))
+    }
+
+    /// The nodes of `leaf` whose edge along `axis` (to the next node) changes sign. Edges that leave the
+    /// field are not counted: beyond the ring nothing changes sign.
+    pub fn crossed_edges(&self, leaf: LeafId, axis: Axis) -> LeafMask {
+        let own = self.inside(leaf);
+        let mut delta = [0; 3];
+        delta[axis as usize] = 1;
+        let next = match self.neighbour(leaf, delta) {
+            Some(n) => *self.inside(n),
+            // Repeat the last layer, so that nothing changes there.
+            None => match axis {
+                Axis::X => [own[7]; 8],
+                Axis::Y => own.map(|w| w >> 56),
+                Axis::Z => own.map(|w| (w >> 7) & Z_FIRST),
+            },
+        };
+        match axis {
+            Axis::X => std::array::from_fn(|x| own[x] ^ if x < 7 { own[x + 1] } else { next[0] }),
+            Axis::Y => std::array::from_fn(|x| own[x] ^ ((own[x] >> 8) | (next[x] << 56))),
+            Axis::Z => {
+                std::array::from_fn(|x| own[x] ^ (((own[x] >> 1) & !Z_LAST) | ((next[x] & Z_FIRST) << 7)))
+            }
+        }
+    }
+}
+
+/// The bits with z = 0 in each row of eight.
+const Z_FIRST: u64 = 0x0101_0101_0101_0101;
+/// The bits with z = 7 in each row of eight.
+const Z_LAST: u64 = Z_FIRST << 7;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::convert::Infallible;
+
+    /// A field on 3 x 3 x 3 leaves whose nodes are inside by a rule, the ring outside.
+    fn field(rule: impl Fn(Ijk) -> bool) -> SignField {
+        let mut origins = Vec::new();
+        for n in 0..27 {
+            origins.push(neighbour_origin(Ijk::default(), n));
+        }
+        let inside: Vec<LeafMask> = origins
+            .iter()
+            .map(|&o| {
+                let mut mask = [0; 8];
+                for n in (0..512).filter(|&n| rule(Ijk::in_leaf(o, n))) {
+                    mask[n >> 6] |= 1 << (n & 63);
+                }
+                mask
+            })
+            .collect();
+        SignField::new(&origins, &inside, |ring| Ok::<_, Infallible>(vec![false; ring.len()])).unwrap()
+    }
+
+    #[test]
+    fn crossed_edges_are_the_sign_changes() {
+        // A scrambled rule, so that every word and shift is exercised; cut off before the ring.
+        let rule = |n: Ijk| {
+            let [i, j, k] = n.0;
+            n.0.iter().all(|&x| (-8..16).contains(&x))
+                && (i * 7 + j * 13 + k * 29 + i * j * k).rem_euclid(5) < 2
+        };
+        let field = field(rule);
+        let mut crossings = 0;
+        for leaf in field.leaves() {
+            for axis in Axis::ALL {
+                let mask = field.crossed_edges(leaf, axis);
+                for n in 0..512 {
+                    let node = Ijk::in_leaf(field.origin(leaf), n);
+                    let crossed = mask[n >> 6] >> (n & 63) & 1 == 1;
+                    assert_eq!(crossed, rule(node) != rule(node.next(axis)), "{node:?} {axis:?}");
+                    crossings += usize::from(crossed);
+                }
+            }
+        }
+        assert!(crossings > 10_000);
+    }
+
+    #[test]
+    fn nodes_are_located_across_leaves() {
+        let field = field(|_| true);
+        let leaf = field.leaves().find(|&l| field.origin(l) == Ijk::default()).unwrap();
+        for local in [[-1, 0, 3], [8, 15, -8], [7, 7, 7]] {
+            let (l, n) = field.locate(leaf, local).unwrap();
+            assert_eq!(Ijk::in_leaf(field.origin(l), n), Ijk(local));
+        }
+    }
+}

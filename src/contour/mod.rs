@@ -1,0 +1,1 @@
+//! contour (being written)

@@ -1,0 +1,130 @@
+//! Hermite data: where the offset surface crosses the grid edges, and its normal there.
+//!
+//! Intersected edges are numbered without a hash map: per leaf and axis a 512-bit mask of the nodes
+//! whose edge (to the next node along the axis) changes sign, and the numbers follow the order leaf,
+//! axis, node.
+
+use crate::band::{Axis, LeafId, LeafMask, SignField};
+
+/// The number of an intersected edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct EdgeId(pub u32);
+
+/// The numbering of the intersected edges of a [`SignField`].
+#[derive(Clone, Debug, Default)]
+pub struct EdgeNumbers {
+    leaves: Vec<LeafEdges>,
+    count: u32,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct LeafEdges {
+    masks: [LeafMask; 3],
+    /// The number of the first edge of the leaf.
+    first: u32,
+    /// Edges of the leaf before word x of an axis.
+    before: [[u16; 8]; 3],
+}
+
+/// More than 2^32 - 1 grid edges change sign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the offset surface crosses more than 4294967295 grid edges; choose a larger voxel size")]
+pub struct TooManyEdges;
+
+impl EdgeNumbers {
+    /// Numbers the sign changes of `signs`.
+    ///
+    /// # Errors
+    /// When there are more than 2^32 - 1 of them.
+    pub fn new(signs: &SignField) -> Result<Self, TooManyEdges> {
+        let mut count: u64 = 0;
+        let mut leaves = Vec::with_capacity(signs.len());
+        for leaf in signs.leaves() {
+            let masks = Axis::ALL.map(|axis| signs.crossed_edges(leaf, axis));
+            let first = u32::try_from(count).map_err(|_| TooManyEdges)?;
+            let mut before = [[0; 8]; 3];
+            let mut in_leaf = 0;
+            for (mask, before) in masks.iter().zip(&mut before) {
+                for (word, before) in mask.iter().zip(before) {
+                    *before = in_leaf;
+                    in_leaf += word.count_ones() as u16;
+                }
+            }
+            count += u64::from(in_leaf);
+            leaves.push(LeafEdges { masks, first, before });
+        }
+        let count = u32::try_from(count).map_err(|_| TooManyEdges)?;
+        Ok(EdgeNumbers { leaves, count })
+    }
+
+    /// The number of intersected edges.
+    pub fn len(&self) -> usize {
+        self.count as usize
+    }
+
+    /// Whether no edge is intersected.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// The nodes of `leaf` whose edge along `axis` is intersected.
+    pub fn mask(&self, leaf: LeafId, axis: Axis) -> &LeafMask {
+        &self.leaves[leaf.0 as usize].masks[axis as usize]
+    }
+
+    /// The numbers of the edges that start in `leaf`, a contiguous range.
+    pub fn range(&self, leaf: LeafId) -> std::ops::Range<u32> {
+        let end = self.leaves.get(leaf.0 as usize + 1).map_or(self.count, |next| next.first);
+        self.leaves[leaf.0 as usize].first..end
+    }
+
+    /// The intersected edge from node `number` of `leaf` along `axis`, if there is one.
+    pub fn get(&self, leaf: LeafId, axis: Axis, number: usize) -> Option<EdgeId> {
+        let edges = &self.leaves[leaf.0 as usize];
+        let (word, bit) = (number >> 6, number & 63);
+        let mask = edges.masks[axis as usize][word];
+        if mask >> bit & 1 == 0 {
+            return None;
+        }
+        let below = (mask & ((1 << bit) - 1)).count_ones();
+        Some(EdgeId(edges.first + u32::from(edges.before[axis as usize][word]) + below))
+    }
+
+    /// The intersected edges that start in `leaf`, as (axis, node number), in the order of their numbers.
+    pub fn in_leaf(&self, leaf: LeafId) -> impl Iterator<Item = (Axis, usize)> + '_ {
+        Axis::ALL.into_iter().flat_map(move |axis| bits(self.mask(leaf, axis)).map(move |n| (axis, n)))
+    }
+}
+
+/// The numbers of the set bits of a leaf mask, ascending.
+pub fn bits(mask: &LeafMask) -> impl Iterator<Item = usize> + '_ {
+    mask.iter().enumerate().flat_map(|(word, &bits)| {
+        std::iter::successors((bits != 0).then_some(bits), |&b| Some(b & (b - 1)).filter(|&b| b != 0))
+            .map(move |b| 64 * word + b.trailing_zeros() as usize)
+    })
+}
+
+/// One crossing: a sample of Hermite data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// Position along the edge, in voxels from its lower node, in 0..=1.
+    pub t: f64,
+    /// Unit normal of the offset surface at the crossing, pointing out of the offset solid.
+    pub normal: [f32; 3],
+}
+
+/// The crossings of all intersected edges, by [`EdgeId`].
+#[derive(Clone, Debug, Default)]
+pub struct Crossings {
+    /// Which edges are intersected, and their numbers.
+    pub numbers: EdgeNumbers,
+    /// One crossing per number.
+    pub samples: Vec<Crossing>,
+}
+
+impl Crossings {
+    /// The crossing of edge `edge`.
+    pub fn sample(&self, edge: EdgeId) -> &Crossing {
+        &self.samples[edge.0 as usize]
+    }
+}

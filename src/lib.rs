@@ -1,0 +1,12 @@
+//! exocarp: offset surfaces of triangle meshes.
+
+pub mod error;
+pub mod run;
+
+pub mod band;
+pub mod contour;
+pub mod edge;
+pub mod io;
+pub mod mesh;
+pub mod offset;
+pub mod vdb;

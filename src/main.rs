@@ -1,0 +1,3 @@
+//! The program `exocarp`.
+
+fn main() {}

@@ -1,0 +1,29 @@
+//! The mesh type: two flat arrays.
+
+/// A triangle mesh: vertex positions in model units, and triangles as triples of vertex numbers,
+/// counter-clockwise seen from outside.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TriMesh {
+    /// Vertex positions (x, y, z).
+    pub vertices: Vec<[f64; 3]>,
+    /// Vertex numbers of each triangle.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl TriMesh {
+    /// The positions of the corners of triangle `t`.
+    ///
+    /// # Panics
+    /// When `t` or one of its vertex numbers is out of range.
+    pub fn corners(&self, t: usize) -> [[f64; 3]; 3] {
+        self.triangles[t].map(|v| self.vertices[v as usize])
+    }
+
+    /// The smallest and largest coordinates of all vertices; `None` without vertices.
+    pub fn bounding_box(&self) -> Option<[[f64; 3]; 2]> {
+        let first = *self.vertices.first()?;
+        Some(self.vertices.iter().fold([first, first], |[lo, hi], v| {
+            [std::array::from_fn(|a| lo[a].min(v[a])), std::array::from_fn(|a| hi[a].max(v[a]))]
+        }))
+    }
+}

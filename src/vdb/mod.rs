@@ -1,0 +1,1 @@
+//! vdb (being written)
