@@ -1,6 +1,7 @@
 //! exocarp: offset surfaces of triangle meshes.
 
 pub mod error;
+pub mod geom;
 pub mod run;
 
 pub mod band;

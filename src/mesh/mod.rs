@@ -1,5 +1,7 @@
 //! Triangle meshes: the type, its clean-up, its topology, its measures, and generated models.
 
+mod topology;
 mod tri_mesh;
 
+pub use topology::{Defects, Topology};
 pub use tri_mesh::TriMesh;
