@@ -10,4 +10,5 @@ pub mod edge;
 pub mod io;
 pub mod mesh;
 pub mod offset;
+pub mod ssvh;
 pub mod vdb;
