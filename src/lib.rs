@@ -6,6 +6,7 @@ pub mod run;
 
 pub mod band;
 pub mod contour;
+pub mod distance;
 pub mod edge;
 pub mod io;
 pub mod mesh;

@@ -81,13 +81,13 @@ impl Triangle {
     #[inline(always)]
     pub fn distance_squared(&self, p: DVec3) -> f64 {
         let outside = self.outside(p);
-        if outside[0] <= 0.0 && outside[1] <= 0.0 && outside[2] <= 0.0 && self.normal != DVec3::ZERO {
+        if outside.iter().all(|&x| x < 0.0) {
             let height = (p - self.corners[0]).dot(self.normal);
             return height * height;
         }
         let mut best = f64::INFINITY;
         for side in Side::ALL {
-            // The closest edge is one whose plane the point is beyond; a needle (all zero) takes all three.
+            // The closest edge is one whose plane the point is not inside of; a needle (all zero) takes all three.
             if outside[side.index()] >= 0.0 {
                 best = best.min(self.segment(side, p).1);
             }
@@ -98,7 +98,7 @@ impl Triangle {
     /// The closest point to `p`. Of two edges at the same distance the one with the lower number counts.
     pub fn closest(&self, p: DVec3) -> ClosestPoint {
         let outside = self.outside(p);
-        if outside[0] <= 0.0 && outside[1] <= 0.0 && outside[2] <= 0.0 && self.normal != DVec3::ZERO {
+        if outside.iter().all(|&x| x < 0.0) {
             let height = (p - self.corners[0]).dot(self.normal);
             return ClosestPoint {
                 point: p - self.normal * height,
