@@ -1,7 +1,12 @@
-//! The narrow band around the offset surface ([LW11] section IV): lattice, leaves, signs.
+//! The narrow band around the offset surface ([LW11] section IV).
 
-mod lattice;
+mod build;
+mod leaves;
 mod signs;
+#[cfg(test)]
+mod tests;
 
-pub use lattice::{Axis, Ijk, LEAF_DIM, LEAF_SIZE, Lattice};
+pub use crate::lattice::{Axis, Ijk, LEAF_DIM, LEAF_SIZE, Lattice};
+pub use build::{BandSettings, build, grid_nodes};
+pub use leaves::{LeafBatch, inside_mask};
 pub use signs::{LeafId, LeafMask, SignField};

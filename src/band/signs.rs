@@ -5,7 +5,7 @@
 //! sign change, and every corner of such a cell, lies in some leaf of the field. Nobody has to ask
 //! for the sign of a node outside it.
 
-use super::lattice::{Axis, Ijk, LEAF_DIM};
+use crate::lattice::{Axis, Ijk, LEAF_DIM};
 use std::collections::HashMap;
 
 /// The number of a leaf within its [`SignField`].

@@ -4,7 +4,8 @@
 //! whose edge (to the next node along the axis) changes sign, and the numbers follow the order leaf,
 //! axis, node.
 
-use crate::band::{Axis, LeafId, LeafMask, SignField};
+use crate::band::{LeafId, LeafMask, SignField};
+use crate::lattice::Axis;
 
 /// The number of an intersected edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -1,5 +1,15 @@
 //! Intersections of grid edges with the offset surface ([LW11] section V).
+//!
+//! Promised for closed input: every crossing lies within 1e-6 voxels of the offset surface.
 
+mod analytic;
 mod crossings;
+mod hybrid;
+mod regions;
+mod shared;
+mod solve;
+mod statistics;
 
 pub use crossings::{Crossing, Crossings, EdgeId, EdgeNumbers, TooManyEdges, bits};
+pub use solve::{NodeTriangles, solve};
+pub use statistics::EdgeStatistics;

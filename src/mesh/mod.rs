@@ -2,6 +2,8 @@
 
 pub mod measure;
 pub mod shapes;
+mod topology;
 mod tri_mesh;
 
+pub use topology::{Defects, Topology};
 pub use tri_mesh::TriMesh;

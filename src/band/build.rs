@@ -1,0 +1,250 @@
+//! Builds the narrow band: bounding boxes in parallel, leaves out in a fixed order.
+
+use super::LeafBatch;
+use crate::distance::SignedDistance;
+use crate::filter::{Block, Filter, FilterStatistics, Verdict};
+use crate::geom::aabb::Aabb;
+use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, Lattice};
+use crate::run::{Cancelled, Phase, RunSettings};
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// What band to build.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BandSettings {
+    /// The lattice.
+    pub lattice: Lattice,
+    /// The offset distance r in model units.
+    pub r: f64,
+    /// Half-width in voxels: nodes with abs(phi) < half_width h become active. At least 1.
+    pub half_width: f64,
+}
+
+impl BandSettings {
+    /// The value of nodes outside the band, as stored: half-width times voxel size.
+    pub fn background(&self) -> f32 {
+        (self.half_width * self.lattice.voxel) as f32
+    }
+}
+
+/// The nodes of the grid: from the first to the second, inclusive. They enclose the model and, when
+/// growing, its offset surface, with the band.
+pub fn grid_nodes(bounds: Aabb, settings: &BandSettings) -> [Ijk; 2] {
+    let bounds = bounds.grown(settings.r.max(0.0) + settings.half_width * settings.lattice.voxel);
+    let index = |x: f64| (x / settings.lattice.voxel) as i32;
+    [Ijk(bounds.lo.to_array().map(|x| index(x) - 1)), Ijk(bounds.hi.to_array().map(|x| index(x) + 1))]
+}
+
+/// Bounding boxes along the grid's longest side. More: queries at their centres are wasted. Fewer: the
+/// octree starts higher and there are fewer tasks to share out among the threads.
+const BOXES_ALONG_AXIS: i32 = 8;
+
+/// Bounding boxes worked off together; the leaves of two such batches are in memory at a time.
+const BOXES_PER_BATCH: usize = 64;
+
+/// Builds the band around the offset surface and hands it, batch by batch in a fixed order, to `sink`.
+///
+/// # Errors
+/// Cancellation, or what `sink` returns.
+pub fn build<E: From<Cancelled> + Send>(
+    distance: &SignedDistance,
+    settings: &BandSettings,
+    run: &RunSettings,
+    mut sink: impl FnMut(LeafBatch) -> Result<(), E> + Send,
+) -> Result<FilterStatistics, E> {
+    let bounds = Aabb::around(distance.mesh().vertices.iter().map(|&v| DVec3::from(v)));
+    let grid = grid_nodes(bounds, settings);
+    let boxes = bounding_boxes(grid);
+    let mut statistics = FilterStatistics { nodes_total: node_count(grid), ..Default::default() };
+    let filter = Filter {
+        distance,
+        lattice: settings.lattice,
+        r: settings.r,
+        half_width: settings.half_width * settings.lattice.voxel,
+    };
+    let worker = Worker { filter, settings: *settings };
+    let phase = run.phase(Phase::Band, boxes.len() as u64);
+    run.install(|| {
+        let mut ready = LeafBatch::default();
+        let mut batches = boxes.chunks(BOXES_PER_BATCH);
+        loop {
+            let next = batches.next();
+            // The bridge takes the last batch while the workers fill the next one.
+            let (sunk, filled) = rayon::join(
+                || if ready.is_empty() && ready.inside_blocks.is_empty() { Ok(()) } else { sink(ready) },
+                || next.map(|boxes| worker.fill(boxes, &phase)),
+            );
+            sunk?;
+            let Some(filled) = filled else { break };
+            let (batch, counts) = filled?;
+            statistics += counts;
+            ready = batch;
+        }
+        Ok(statistics)
+    })
+}
+
+fn node_count([lo, hi]: [Ijk; 2]) -> u64 {
+    (hi - lo).0.map(|n| n as u64 + 1).iter().product()
+}
+
+/// The bounding boxes that cover the grid, in lexicographic order.
+fn bounding_boxes([lo, hi]: [Ijk; 2]) -> Vec<Block> {
+    let longest = (hi - lo).0.into_iter().max().expect("three axes") + 1;
+    let side = (longest / BOXES_ALONG_AXIS).max(2 * LEAF_DIM);
+    // The power of two at or below.
+    let side = 1 << side.ilog2();
+    let first = lo.0.map(|i| i.div_euclid(side));
+    let last = hi.0.map(|i| i.div_euclid(side));
+    let mut boxes = Vec::new();
+    for i in first[0]..=last[0] {
+        for j in first[1]..=last[1] {
+            for k in first[2]..=last[2] {
+                boxes.push(Block { origin: Ijk::new(i * side, j * side, k * side), side });
+            }
+        }
+    }
+    boxes
+}
+
+struct Worker<'a> {
+    filter: Filter<'a>,
+    settings: BandSettings,
+}
+
+impl Worker<'_> {
+    fn fill(
+        &self,
+        boxes: &[Block],
+        phase: &crate::run::PhaseGuard,
+    ) -> Result<(LeafBatch, FilterStatistics), Cancelled> {
+        let filled: Vec<(LeafBatch, FilterStatistics)> = boxes
+            .par_iter()
+            .with_max_len(1)
+            .map(|&block| {
+                phase.advance(1)?;
+                Ok(self.bounding_box(block))
+            })
+            .collect::<Result<_, Cancelled>>()?;
+        let mut batch = LeafBatch::default();
+        let mut statistics = FilterStatistics::default();
+        for (mut leaves, counts) in filled {
+            batch.append(&mut leaves);
+            statistics += counts;
+        }
+        Ok((batch, statistics))
+    }
+
+    fn bounding_box(&self, block: Block) -> (LeafBatch, FilterStatistics) {
+        let mut statistics = FilterStatistics::default();
+        let mut batch = LeafBatch::default();
+        let mut kept: Vec<(Ijk, u32)> = Vec::new();
+        match self.filter.bounding_box(block, &mut statistics) {
+            Verdict::Outside => {}
+            Verdict::Inside => batch.inside_blocks.push((block.origin, block.side)),
+            Verdict::Kept { triangle, .. } => {
+                self.filter.octree(block, triangle, LEAF_DIM, &mut statistics, &mut |block, verdict| {
+                    match verdict {
+                        Verdict::Outside => {}
+                        Verdict::Inside => batch.inside_blocks.push((block.origin, block.side)),
+                        Verdict::Kept { triangle, .. } => kept.push((block.origin, triangle)),
+                    }
+                });
+            }
+        }
+        for (origin, triangle) in kept {
+            self.leaf(origin, triangle, &mut batch, &mut statistics);
+        }
+        (batch, statistics)
+    }
+
+    /// Evaluates the leaf at `origin` and appends it, unless no node of it is active.
+    fn leaf(&self, origin: Ijk, triangle: u32, batch: &mut LeafBatch, statistics: &mut FilterStatistics) {
+        let mut leaf = Leaf { values: [0.0; LEAF_SIZE], active: [0; 8], closest: [-1; LEAF_SIZE] };
+        let background = self.settings.background();
+        let mut kept: [(Ijk, u32, f64); 64] = [(Ijk::default(), 0, 0.0); 64];
+        let mut kept_count = 0;
+        let block = Block { origin, side: LEAF_DIM };
+        self.filter.octree(block, triangle, 2, statistics, &mut |block, verdict| match verdict {
+            Verdict::Outside => leaf.fill(block, background),
+            Verdict::Inside => leaf.fill(block, -background),
+            Verdict::Kept { triangle, distance } => {
+                kept[kept_count] = (block.origin, triangle, distance);
+                kept_count += 1;
+            }
+        });
+        for &(origin, triangle, distance) in &kept[..kept_count] {
+            self.nodes(Block { origin, side: 2 }, triangle, distance, &mut leaf, statistics);
+        }
+        if leaf.active.iter().any(|&word| word != 0) {
+            batch.origins.push(origin);
+            batch.values.extend_from_slice(&leaf.values);
+            batch.active.push(leaf.active);
+            batch.closest.extend_from_slice(&leaf.closest);
+        } else if leaf.values[0] < 0.0 {
+            // Without active nodes there is no sign change: the leaf is inside as a whole.
+            batch.inside_blocks.push((origin, LEAF_DIM));
+        }
+    }
+
+    /// Evaluates the eight nodes of a block of side 2 whose centre has the signed distance `centre`.
+    fn nodes(
+        &self,
+        block: Block,
+        triangle: u32,
+        centre: f64,
+        leaf: &mut Leaf,
+        statistics: &mut FilterStatistics,
+    ) {
+        let Filter { distance, lattice, r, .. } = self.filter;
+        let background = self.settings.background();
+        // Farther from the surface than any node from the centre: the sign is that of the centre.
+        let one_side = centre.abs() > block.radius(lattice) * (1.0 + 1e-9);
+        for node in block.children().map(|b| b.origin) {
+            let p = DVec3::from(lattice.world_from_index(node));
+            let hit = distance.ssvh().closest_from(p, triangle);
+            let signed = if one_side {
+                hit.distance_squared.sqrt().copysign(centre)
+            } else {
+                distance.from_triangle(p, hit.triangle).distance
+            };
+            let phi = signed - r;
+            statistics.node_queries += 1;
+            statistics.valid_nodes += u64::from(phi.abs() <= lattice.voxel);
+            let number = node.number_in_leaf();
+            if phi.abs() < f64::from(background) {
+                leaf.values[number] = stored(phi, background);
+                leaf.closest[number] = hit.triangle as i32;
+                leaf.active[number >> 6] |= 1 << (number & 63);
+            } else {
+                leaf.values[number] = background.copysign(phi as f32);
+            }
+        }
+    }
+}
+
+/// phi as an f32 that keeps its sign and stays below the background; zero becomes the smallest positive
+/// value.
+fn stored(phi: f64, background: f32) -> f32 {
+    let magnitude = (phi.abs() as f32).clamp(f32::MIN_POSITIVE, background.next_down());
+    if phi < 0.0 { -magnitude } else { magnitude }
+}
+
+struct Leaf {
+    values: [f32; LEAF_SIZE],
+    active: [u64; 8],
+    closest: [i32; LEAF_SIZE],
+}
+
+impl Leaf {
+    fn fill(&mut self, block: Block, value: f32) {
+        let first = block.origin.number_in_leaf();
+        let side = block.side as usize;
+        for x in 0..side {
+            for y in 0..side {
+                let row = first + 64 * x + 8 * y;
+                self.values[row..row + side].fill(value);
+            }
+        }
+    }
+}

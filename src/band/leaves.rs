@@ -1,0 +1,49 @@
+//! The working form of the band: leaves in plain arrays, as they cross the bridge to OpenVDB.
+
+use super::LeafMask;
+use crate::lattice::{Ijk, LEAF_SIZE};
+
+/// A batch of leaves, structure of arrays: entry n of `values` and `closest` belongs to node n % 512 of
+/// leaf n / 512.
+#[derive(Clone, Debug, Default)]
+pub struct LeafBatch {
+    /// Lowest node of each leaf.
+    pub origins: Vec<Ijk>,
+    /// phi, or plus or minus the background on inactive nodes; 512 per leaf.
+    pub values: Vec<f32>,
+    /// Nodes with abs(phi) below the background.
+    pub active: Vec<LeafMask>,
+    /// Number of the closest triangle on active nodes, -1 elsewhere; 512 per leaf.
+    pub closest: Vec<i32>,
+    /// Blocks (origin, side; the side a multiple of 8) that are inside as a whole and hold no leaf.
+    pub inside_blocks: Vec<(Ijk, i32)>,
+}
+
+impl LeafBatch {
+    /// The number of leaves.
+    pub fn len(&self) -> usize {
+        self.origins.len()
+    }
+
+    /// Whether there is no leaf.
+    pub fn is_empty(&self) -> bool {
+        self.origins.is_empty()
+    }
+
+    /// Appends all of `other`.
+    pub fn append(&mut self, other: &mut LeafBatch) {
+        self.origins.append(&mut other.origins);
+        self.values.append(&mut other.values);
+        self.active.append(&mut other.active);
+        self.closest.append(&mut other.closest);
+        self.inside_blocks.append(&mut other.inside_blocks);
+    }
+}
+
+/// The nodes of a leaf with a negative value.
+pub fn inside_mask(values: &[f32]) -> LeafMask {
+    assert_eq!(values.len(), LEAF_SIZE, "a leaf has 512 values");
+    std::array::from_fn(|x| {
+        values[64 * x..64 * x + 64].iter().enumerate().fold(0, |m, (bit, &v)| m | u64::from(v < 0.0) << bit)
+    })
+}

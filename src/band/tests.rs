@@ -1,0 +1,117 @@
+use super::*;
+use crate::distance::SignedDistance;
+use crate::mesh::{Topology, TriMesh};
+use crate::run::{Cancelled, RunSettings};
+use std::collections::HashMap;
+
+/// An octahedron of circumradius 1 around a centre off the lattice.
+fn octahedron() -> TriMesh {
+    let c = [0.03, -0.01, 0.02];
+    let vertex =
+        |axis: usize, s: f64| -> [f64; 3] { std::array::from_fn(|a| c[a] + if a == axis { s } else { 0.0 }) };
+    let vertices = vec![
+        vertex(0, 1.0),
+        vertex(0, -1.0),
+        vertex(1, 1.0),
+        vertex(1, -1.0),
+        vertex(2, 1.0),
+        vertex(2, -1.0),
+    ];
+    let triangles =
+        vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+    TriMesh { vertices, triangles }
+}
+
+fn build_all(settings: &BandSettings, threads: usize) -> LeafBatch {
+    let mesh = octahedron();
+    let topology = Topology::new(&mesh);
+    assert!(topology.defects().is_closed());
+    let distance = SignedDistance::new(&mesh, &topology);
+    let run = RunSettings::with_threads(threads).unwrap();
+    let mut all = LeafBatch::default();
+    build(&distance, settings, &run, |mut batch| {
+        all.append(&mut batch);
+        Ok::<_, Cancelled>(())
+    })
+    .unwrap();
+    all
+}
+
+/// The band against a query at every node of the grid.
+fn check_against_every_node(r: f64, half_width: f64) {
+    let mesh = octahedron();
+    let topology = Topology::new(&mesh);
+    let distance = SignedDistance::new(&mesh, &topology);
+    let settings = BandSettings { lattice: Lattice { voxel: 0.07 }, r, half_width };
+    let batch = build_all(&settings, 2);
+    let background = settings.background();
+    let leaf: HashMap<Ijk, usize> = batch.origins.iter().zip(0..).map(|(&o, n)| (o, n)).collect();
+    assert_eq!(leaf.len(), batch.len(), "no leaf twice");
+    let covered_inside = |node: Ijk| {
+        let inside = |&(o, side): &(Ijk, i32)| (node - o).0.iter().all(|&x| (0..side).contains(&x));
+        batch.inside_blocks.iter().filter(|b| inside(b)).count()
+    };
+    let [lo, hi] =
+        grid_nodes(crate::geom::aabb::Aabb::around(mesh.vertices.iter().map(|&v| v.into())), &settings);
+    let (mut active, mut inside) = (0, 0);
+    for i in lo.0[0]..=hi.0[0] {
+        for j in lo.0[1]..=hi.0[1] {
+            for k in lo.0[2]..=hi.0[2] {
+                let node = Ijk::new(i, j, k);
+                let phi = distance.at(settings.lattice.world_from_index(node).into(), 0).distance - r;
+                inside += usize::from(phi < 0.0);
+                let Some(&n) = leaf.get(&node.leaf_origin()) else {
+                    assert!(phi.abs() >= f64::from(background), "{node:?} is missing: {phi}");
+                    assert_eq!(covered_inside(node), usize::from(phi < 0.0), "{node:?} {phi}");
+                    continue;
+                };
+                assert_eq!(covered_inside(node), 0, "a leaf under an inside block");
+                let number = node.number_in_leaf();
+                let value = batch.values[512 * n + number];
+                let is_active = batch.active[n][number >> 6] >> (number & 63) & 1 == 1;
+                assert_eq!(value < 0.0, phi < 0.0, "{node:?} {value} {phi}");
+                assert_eq!(is_active, phi.abs() < f64::from(background), "{node:?}");
+                if is_active {
+                    assert!((f64::from(value) - phi).abs() <= 2e-7 * f64::from(background));
+                    assert!(batch.closest[512 * n + number] >= 0);
+                    active += 1;
+                } else {
+                    assert_eq!(value.abs(), background);
+                    assert_eq!(batch.closest[512 * n + number], -1);
+                }
+            }
+        }
+    }
+    assert!(active > 100 && inside > 10, "{active} {inside}");
+}
+
+#[test]
+fn the_band_holds_exactly_the_valid_nodes_and_all_signs() {
+    for (r, half_width) in [(0.0, 1.0), (0.4, 1.0), (-0.2, 1.0), (0.03, 3.0), (-0.1, 3.0), (2.0, 1.5)] {
+        check_against_every_node(r, half_width);
+    }
+}
+
+#[test]
+fn the_band_does_not_depend_on_the_number_of_threads() {
+    let settings = BandSettings { lattice: Lattice { voxel: 0.05 }, r: 0.2, half_width: 3.0 };
+    let one = build_all(&settings, 1);
+    for threads in [2, 8] {
+        let other = build_all(&settings, threads);
+        assert_eq!(one.origins, other.origins);
+        assert_eq!(one.values, other.values);
+        assert_eq!(one.closest, other.closest);
+        assert_eq!(one.inside_blocks, other.inside_blocks);
+    }
+}
+
+#[test]
+fn cancelling_stops_the_band() {
+    let mesh = octahedron();
+    let topology = Topology::new(&mesh);
+    let distance = SignedDistance::new(&mesh, &topology);
+    let run = RunSettings::with_threads(2).unwrap();
+    run.cancel_token().cancel();
+    let settings = BandSettings { lattice: Lattice { voxel: 0.05 }, r: 0.2, half_width: 1.0 };
+    assert_eq!(build(&distance, &settings, &run, |_| Ok::<_, Cancelled>(())), Err(Cancelled));
+}

@@ -1,0 +1,136 @@
+//! All intersected edges of a band, in parallel over its leaves.
+
+use super::hybrid::{GridEdge, NodeTriangle, Solver};
+use super::statistics::EdgeStatistics;
+use super::{Crossing, Crossings, EdgeNumbers};
+use crate::band::{LeafId, SignField};
+use crate::distance::SignedDistance;
+use crate::lattice::{Axis, Ijk, LEAF_SIZE, Lattice};
+use crate::run::{Cancelled, Phase, RunSettings};
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// The closest triangles of the band's nodes, by leaf of a [`SignField`].
+#[derive(Clone, Debug)]
+pub struct NodeTriangles {
+    /// Per leaf of the field its position in `ids`, or `u32::MAX` for a leaf of the ring.
+    slots: Vec<u32>,
+    ids: Vec<i32>,
+}
+
+impl NodeTriangles {
+    /// `ids` holds 512 numbers for each of the leaves `origins`, -1 where none is known.
+    ///
+    /// # Panics
+    /// When the lengths do not match.
+    pub fn new(signs: &SignField, origins: &[Ijk], ids: Vec<i32>) -> Self {
+        assert_eq!(ids.len(), origins.len() * LEAF_SIZE, "512 triangle numbers per leaf");
+        let mut order: Vec<u32> = (0..origins.len() as u32).collect();
+        order.sort_unstable_by_key(|&n| origins[n as usize]);
+        // Both lists are sorted by origin now.
+        let mut order = order.into_iter().peekable();
+        let slots = signs
+            .leaves()
+            .map(|leaf| order.next_if(|&n| origins[n as usize] == signs.origin(leaf)).unwrap_or(u32::MAX))
+            .collect();
+        NodeTriangles { slots, ids }
+    }
+
+    fn get(&self, leaf: LeafId, number: usize) -> Option<u32> {
+        let slot = self.slots[leaf.0 as usize];
+        if slot == u32::MAX {
+            return None;
+        }
+        u32::try_from(self.ids[slot as usize * LEAF_SIZE + number]).ok()
+    }
+}
+
+/// The intersections of the edges numbered by `numbers` with the surface at distance `r`.
+///
+/// # Errors
+/// Cancellation.
+pub fn solve(
+    distance: &SignedDistance,
+    lattice: Lattice,
+    r: f64,
+    signs: &SignField,
+    numbers: EdgeNumbers,
+    triangles: &NodeTriangles,
+    run: &RunSettings,
+) -> Result<(Crossings, EdgeStatistics), Cancelled> {
+    let solver = Solver { distance, r, voxel: lattice.voxel };
+    let mut samples = vec![Crossing { t: 0.0, normal: [0.0; 3] }; numbers.len()];
+    let mut rest: &mut [Crossing] = &mut samples;
+    let mut tasks: Vec<(LeafId, &mut [Crossing])> = Vec::new();
+    for leaf in signs.leaves() {
+        let (own, others) = rest.split_at_mut(numbers.range(leaf).len());
+        rest = others;
+        if !own.is_empty() {
+            tasks.push((leaf, own));
+        }
+    }
+    let phase = run.phase(Phase::Edges, tasks.len() as u64);
+    let leaf = LeafSolver { solver, lattice, signs, numbers: &numbers, triangles };
+    let statistics = run.install(|| {
+        tasks
+            .into_par_iter()
+            .map(|(id, samples)| {
+                phase.advance(1)?;
+                Ok(leaf.solve(id, samples))
+            })
+            .try_reduce(EdgeStatistics::default, |mut a, b| {
+                a += b;
+                Ok(a)
+            })
+    })?;
+    Ok((Crossings { numbers, samples }, statistics))
+}
+
+struct LeafSolver<'a> {
+    solver: Solver<'a>,
+    lattice: Lattice,
+    signs: &'a SignField,
+    numbers: &'a EdgeNumbers,
+    triangles: &'a NodeTriangles,
+}
+
+impl LeafSolver<'_> {
+    fn solve(&self, leaf: LeafId, samples: &mut [Crossing]) -> EdgeStatistics {
+        let mut statistics = EdgeStatistics::default();
+        let mut guess = 0;
+        for ((axis, number), sample) in self.numbers.in_leaf(leaf).zip(samples) {
+            *sample = self.edge(leaf, axis, number, &mut guess, &mut statistics);
+        }
+        statistics
+    }
+
+    fn edge(
+        &self,
+        leaf: LeafId,
+        axis: Axis,
+        number: usize,
+        guess: &mut u32,
+        statistics: &mut EdgeStatistics,
+    ) -> Crossing {
+        let node = Ijk::in_leaf(Ijk::default(), number);
+        let (next_leaf, next_number) =
+            self.signs.locate(leaf, node.next(axis).0).expect("an intersected edge ends in the field");
+        let known = [self.triangles.get(leaf, number), self.triangles.get(next_leaf, next_number)];
+        if let Some(triangle) = known[0].or(known[1]) {
+            *guess = triangle;
+        }
+        let triangle = |known: Option<u32>| known.map_or(NodeTriangle::Guess(*guess), NodeTriangle::Known);
+        let origin = self.signs.origin(leaf);
+        let p = DVec3::from(self.lattice.world_from_index(origin + node));
+        let q = DVec3::from(self.lattice.world_from_index((origin + node).next(axis)));
+        let inside_first = self.signs.inside(leaf)[number >> 6] >> (number & 63) & 1 == 1;
+        let (edge, forward) = if inside_first {
+            (GridEdge { inside: p, outside: q, triangles: [triangle(known[0]), triangle(known[1])] }, true)
+        } else {
+            (GridEdge { inside: q, outside: p, triangles: [triangle(known[1]), triangle(known[0])] }, false)
+        };
+        let root = self.solver.solve(&edge, statistics);
+        let t = if forward { root.t } else { 1.0 - root.t };
+        Crossing { t, normal: root.normal.as_vec3().to_array() }
+    }
+}

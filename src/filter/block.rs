@@ -1,0 +1,41 @@
+//! Cubic blocks of grid nodes.
+
+use crate::lattice::{Ijk, Lattice};
+use glam::DVec3;
+
+/// The nodes `origin` .. `origin + side - 1` along each axis.
+///
+/// The paper's boxes hold m^3 cells and share their border nodes; these hold m^3 nodes, so that each node
+/// is in one block, and reach half a cell less far.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Block {
+    /// The lowest node.
+    pub origin: Ijk,
+    /// Nodes along each axis, a power of two.
+    pub side: i32,
+}
+
+impl Block {
+    /// World position of the centre of the block's nodes.
+    pub fn centre(&self, lattice: Lattice) -> DVec3 {
+        let half = 0.5 * f64::from(self.side - 1);
+        DVec3::from(self.origin.0.map(|i| lattice.voxel * (f64::from(i) + half)))
+    }
+
+    /// Radius of the sphere through the block's corner nodes: the papers' delta.
+    pub fn radius(&self, lattice: Lattice) -> f64 {
+        0.5 * 3f64.sqrt() * f64::from(self.side - 1) * lattice.voxel
+    }
+
+    /// The eight halves, z fastest.
+    pub fn children(&self) -> [Block; 8] {
+        let side = self.side / 2;
+        std::array::from_fn(|n| {
+            let n = n as i32;
+            Block {
+                origin: self.origin + Ijk::new((n >> 2) * side, (n >> 1 & 1) * side, (n & 1) * side),
+                side,
+            }
+        })
+    }
+}

@@ -1,0 +1,95 @@
+//! The octree filter ([LW11] section IV.D), and the order in which the filters are applied.
+
+use super::{Block, FilterStatistics, bounding_box, signed_distance};
+use crate::distance::SignedDistance;
+use crate::lattice::Lattice;
+
+/// Rounding allowance of a test, in voxels: nodes are evaluated with an error far below this, and a block
+/// is only ever kept for it in vain.
+const ROUNDING: f64 = 1e-6;
+
+/// What a filter says of a block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Verdict {
+    /// All nodes are outside the offset solid and none is in the band.
+    Outside,
+    /// All nodes are inside the offset solid and none is in the band.
+    Inside,
+    /// Nodes may be in the band.
+    Kept {
+        /// The triangle closest to the block's centre.
+        triangle: u32,
+        /// The signed distance at the block's centre.
+        distance: f64,
+    },
+}
+
+/// The filters for one offset distance on one lattice.
+#[derive(Debug)]
+pub struct Filter<'a> {
+    /// The distance field of the model.
+    pub distance: &'a SignedDistance<'a>,
+    /// The lattice.
+    pub lattice: Lattice,
+    /// The offset distance r.
+    pub r: f64,
+    /// Half-width of the band in model units: nodes with abs(phi) up to this are kept.
+    pub half_width: f64,
+}
+
+impl Filter<'_> {
+    /// Applies the bounding box filter, then the signed distance filter to a bounding box.
+    pub fn bounding_box(&self, block: Block, statistics: &mut FilterStatistics) -> Verdict {
+        let centre = block.centre(self.lattice);
+        let reach = self.reach(block);
+        let hit = self.distance.ssvh().closest(centre);
+        statistics.bounding_box_queries += 1;
+        let signed = self.distance.from_triangle(centre, hit.triangle).distance;
+        let phi = signed - self.r;
+        if bounding_box::rejects(hit.distance_squared.sqrt(), self.r.abs(), reach) {
+            return uniform(phi);
+        }
+        if signed_distance::rejects(signed, self.r, reach) {
+            statistics.signed_distance_rejected += 1;
+            return uniform(phi);
+        }
+        Verdict::Kept { triangle: hit.triangle, distance: signed }
+    }
+
+    /// Subdivides a kept block down to blocks of side `smallest` and hands to `visit` each block that is
+    /// rejected on the way, and the smallest ones that are kept. Every node of `block` is in exactly one
+    /// of them. `triangle` is one near the block.
+    pub fn octree(
+        &self,
+        block: Block,
+        triangle: u32,
+        smallest: i32,
+        statistics: &mut FilterStatistics,
+        visit: &mut impl FnMut(Block, Verdict),
+    ) {
+        for child in block.children() {
+            let sample = self.distance.at(child.centre(self.lattice), triangle);
+            let phi = sample.distance - self.r;
+            if phi.abs() > self.reach(child) {
+                statistics.octree_queries_invalid += 1;
+                visit(child, uniform(phi));
+                continue;
+            }
+            statistics.octree_queries_valid += 1;
+            if child.side > smallest {
+                self.octree(child, sample.triangle, smallest, statistics, visit);
+            } else {
+                visit(child, Verdict::Kept { triangle: sample.triangle, distance: sample.distance });
+            }
+        }
+    }
+
+    /// l + delta of Remark 1: a block whose centre has abs(phi) above this holds no valid node.
+    fn reach(&self, block: Block) -> f64 {
+        self.half_width + block.radius(self.lattice) + ROUNDING * self.lattice.voxel
+    }
+}
+
+fn uniform(phi: f64) -> Verdict {
+    if phi < 0.0 { Verdict::Inside } else { Verdict::Outside }
+}

@@ -1,0 +1,35 @@
+//! What the filters did: the counts of [LW11] Table IV.
+
+use serde::Serialize;
+use std::ops::AddAssign;
+
+/// Distance computations by filter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct FilterStatistics {
+    /// Nodes of the grid that encloses model and offset surface.
+    pub nodes_total: u64,
+    /// Queries at the centres of the bounding boxes.
+    pub bounding_box_queries: u64,
+    /// Bounding boxes that the signed distance filter rejected.
+    pub signed_distance_rejected: u64,
+    /// Octree queries after which the block was kept.
+    pub octree_queries_valid: u64,
+    /// Octree queries after which the block was rejected.
+    pub octree_queries_invalid: u64,
+    /// Queries at nodes.
+    pub node_queries: u64,
+    /// Nodes with abs(phi) <= h.
+    pub valid_nodes: u64,
+}
+
+impl AddAssign for FilterStatistics {
+    fn add_assign(&mut self, o: Self) {
+        self.nodes_total += o.nodes_total;
+        self.bounding_box_queries += o.bounding_box_queries;
+        self.signed_distance_rejected += o.signed_distance_rejected;
+        self.octree_queries_valid += o.octree_queries_valid;
+        self.octree_queries_invalid += o.octree_queries_invalid;
+        self.node_queries += o.node_queries;
+        self.valid_nodes += o.valid_nodes;
+    }
+}

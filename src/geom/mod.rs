@@ -1,0 +1,7 @@
+//! Geometry below everything else: points, triangles, swept spheres, roots, small matrices.
+
+pub mod aabb;
+pub mod roots;
+pub mod swept;
+pub mod sym3;
+pub mod triangle;

@@ -1,0 +1,205 @@
+//! Swept sphere volumes: all points within a radius of a point, a segment or a rectangle (Larsen et
+//! al. 2000).
+//!
+//! One formula serves all three kinds: a rectangle with one half-length zero is a segment, with both
+//! zero a point.
+
+use super::sym3::Sym3;
+use glam::DVec3;
+
+/// The kind of a swept sphere volume.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SweptKind {
+    /// A sphere.
+    Point,
+    /// A capsule.
+    Line,
+    /// A rounded slab.
+    Rectangle,
+}
+
+/// A swept sphere volume: everything within `radius` of the rectangle
+/// { centre + x u + y v : |x| <= half[0], |y| <= half[1] }.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Swept {
+    /// Centre of the rectangle.
+    pub centre: DVec3,
+    /// Unit direction of the longer side.
+    pub u: DVec3,
+    /// Unit direction of the shorter side, perpendicular to `u`.
+    pub v: DVec3,
+    /// Half the side lengths along `u` and `v`.
+    pub half: [f64; 2],
+    /// The radius that is swept over the rectangle.
+    pub radius: f64,
+}
+
+/// A sphere to be enclosed; a point has radius 0.
+pub type Sphere = (DVec3, f64);
+
+impl Swept {
+    /// The kind, from the half-lengths.
+    pub fn kind(&self) -> SweptKind {
+        match self.half {
+            [0.0, 0.0] => SweptKind::Point,
+            [_, 0.0] => SweptKind::Line,
+            _ => SweptKind::Rectangle,
+        }
+    }
+
+    /// Distance from `p` to the inner rectangle (segment, point).
+    pub fn core_distance(&self, p: DVec3) -> f64 {
+        let d = p - self.centre;
+        let x = (d.dot(self.u).abs() - self.half[0]).max(0.0);
+        let y = (d.dot(self.v).abs() - self.half[1]).max(0.0);
+        let z = d.dot(self.u.cross(self.v));
+        (x * x + y * y + z * z).sqrt()
+    }
+
+    /// No point of the volume is nearer to `p` than this.
+    pub fn lower_bound(&self, p: DVec3) -> f64 {
+        (self.core_distance(p) - self.radius).max(0.0)
+    }
+
+    /// No point of the volume is farther from `p` than this.
+    pub fn upper_bound(&self, p: DVec3) -> f64 {
+        self.corners().into_iter().map(|c| (p - c).length()).fold(0.0, f64::max) + self.radius
+    }
+
+    /// The corners of the rectangle.
+    pub fn corners(&self) -> [DVec3; 4] {
+        let (x, y) = (self.u * self.half[0], self.v * self.half[1]);
+        [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|(s, t)| self.centre + x * s + y * t)
+    }
+
+    /// The volume: slab, half-cylinders along the four sides, and one sphere from the corners.
+    pub fn volume(&self) -> f64 {
+        use std::f64::consts::PI;
+        let ([a, b], r) = (self.half, self.radius);
+        8.0 * a * b * r + 2.0 * PI * r * r * (a + b) + 4.0 / 3.0 * PI * r * r * r
+    }
+
+    /// The best fitting volume around `spheres` (at least one): of point-, line- and rectangle-swept the
+    /// one with the smallest volume, the simpler one on a tie, with axes by principal components.
+    pub fn around(spheres: &[Sphere]) -> Swept {
+        let (u, v) = principal_axes(spheres);
+        let rectangle = fit(spheres, u, v, SweptKind::Rectangle);
+        let line = fit(spheres, u, v, SweptKind::Line);
+        let point = fit(spheres, u, v, SweptKind::Point);
+        let best = if line.volume() <= rectangle.volume() { line } else { rectangle };
+        if point.volume() <= best.volume() { point } else { best }
+    }
+
+    /// The rectangle-swept volume of a triangle, along its longest edge; its radius is rounding alone.
+    pub fn around_triangle(corners: [DVec3; 3]) -> Swept {
+        let longest = (0..3)
+            .max_by(|&i, &j| {
+                let length = |k: usize| (corners[(k + 1) % 3] - corners[k]).length_squared();
+                length(i).total_cmp(&length(j))
+            })
+            .expect("three edges");
+        let base = corners[(longest + 1) % 3] - corners[longest];
+        let u = base.try_normalize().unwrap_or(DVec3::X);
+        let apex = corners[(longest + 2) % 3] - corners[longest];
+        let v = (apex - u * apex.dot(u)).try_normalize().unwrap_or_else(|| u.any_orthonormal_vector());
+        fit(&corners.map(|c| (c, 0.0)), u, v, SweptKind::Rectangle)
+    }
+
+    /// The same volume with the radius that `spheres` really need, after centre, axes or half-lengths
+    /// were rounded.
+    pub fn with_radius_around(self, spheres: &[Sphere]) -> Swept {
+        let radius = spheres.iter().map(|&(p, r)| self.core_distance(p) + r).fold(0.0, f64::max);
+        Swept { radius, ..self }
+    }
+}
+
+fn principal_axes(spheres: &[Sphere]) -> (DVec3, DVec3) {
+    let mean = spheres.iter().map(|s| s.0).sum::<DVec3>() / spheres.len() as f64;
+    let mut covariance = Sym3::default();
+    for &(p, _) in spheres {
+        covariance.add_outer(p - mean, 1.0);
+    }
+    let (_, [u, v, _]) = covariance.eigen();
+    (u, v)
+}
+
+fn fit(spheres: &[Sphere], u: DVec3, v: DVec3, kind: SweptKind) -> Swept {
+    let n = u.cross(v);
+    let origin = spheres[0].0;
+    let local = |p: DVec3| {
+        let d = p - origin;
+        DVec3::new(d.dot(u), d.dot(v), d.dot(n))
+    };
+    let lo = spheres.iter().map(|&(p, r)| local(p) - r).fold(DVec3::INFINITY, DVec3::min);
+    let hi = spheres.iter().map(|&(p, r)| local(p) + r).fold(DVec3::NEG_INFINITY, DVec3::max);
+    let mid = (lo + hi) * 0.5;
+    // Distance of a sphere from the core's line or plane, as far as the core's extent does not matter.
+    let off_core = |p: DVec3| match kind {
+        SweptKind::Rectangle => (p.z - mid.z).abs(),
+        SweptKind::Line | SweptKind::Point => (p.y - mid.y).hypot(p.z - mid.z),
+    };
+    let radius = spheres.iter().map(|&(p, r)| off_core(local(p)) + r).fold(0.0, f64::max);
+    // The round end already covers sqrt(radius^2 - off^2) beyond the core, so the core can be shorter.
+    let extent = |axis: usize| {
+        let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
+        for &(p, r) in spheres {
+            let p = local(p);
+            let room = ((radius - r).max(0.0).powi(2) - off_core(p).powi(2)).max(0.0).sqrt();
+            from = from.min(p[axis] + room);
+            to = to.max(p[axis] - room);
+        }
+        if from < to { ((from + to) * 0.5, (to - from) * 0.5) } else { (mid[axis], 0.0) }
+    };
+    let (x, half_u) = if kind == SweptKind::Point { (mid.x, 0.0) } else { extent(0) };
+    let (y, half_v) = if kind == SweptKind::Rectangle { extent(1) } else { (mid.y, 0.0) };
+    let centre = origin + u * x + v * y + n * mid.z;
+    Swept { centre, u, v, half: [half_u, half_v], radius }.with_radius_around(spheres)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn spheres() -> impl Strategy<Value = Vec<Sphere>> {
+        let coordinate = -10.0..10.0;
+        prop::collection::vec((prop::array::uniform3(coordinate), 0.0..1.0), 1..40)
+            .prop_map(|v| v.into_iter().map(|(p, r)| (DVec3::from(p), r)).collect())
+    }
+
+    proptest! {
+        #[test]
+        fn bounds_hold(spheres in spheres(), q in prop::array::uniform3(-30.0..30.0f64)) {
+            let swept = Swept::around(&spheres);
+            let q = DVec3::from(q);
+            for (p, r) in spheres {
+                prop_assert!(swept.lower_bound(q) <= ((q - p).length() - r).max(0.0) + 1e-12);
+                prop_assert!(swept.upper_bound(q) >= (q - p).length() + r - 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn the_best_fit_is_chosen() {
+        let ball: Vec<Sphere> = (0..100)
+            .map(|i| {
+                let (a, z) = (i as f64 * 2.4, i as f64 / 49.5 - 1.0);
+                let s = (1.0 - z * z).max(0.0).sqrt();
+                (DVec3::new(s * a.cos(), s * a.sin(), z), 0.0)
+            })
+            .collect();
+        assert_eq!(Swept::around(&ball).kind(), SweptKind::Point);
+        let rod: Vec<Sphere> = (0..10).map(|i| (DVec3::new(i as f64, 0.0, 0.0), 0.1)).collect();
+        assert_eq!(Swept::around(&rod).kind(), SweptKind::Line);
+        let plate: Vec<Sphere> =
+            (0..100).map(|i| (DVec3::new((i % 10) as f64, (i / 10) as f64, 0.0), 0.01)).collect();
+        assert_eq!(Swept::around(&plate).kind(), SweptKind::Rectangle);
+    }
+
+    #[test]
+    fn a_triangle_has_no_radius() {
+        let swept =
+            Swept::around_triangle([DVec3::ZERO, DVec3::new(4.0, 0.0, 0.0), DVec3::new(1.0, 2.0, 3.0)]);
+        assert!(swept.radius < 1e-14);
+    }
+}

@@ -1,0 +1,247 @@
+//! Closest point on a triangle, with the feature it lies on (Eberly's seven regions).
+//!
+//! The regions are told apart by the three planes through the edges that are perpendicular to the
+//! triangle, and each edge region by its two end planes. No barycentric division takes part in the
+//! decision, so needles keep their accuracy.
+
+use glam::DVec3;
+
+/// A corner or an edge of a triangle: 0, 1 or 2. Edge k runs from corner k to corner k + 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Side(u8);
+
+impl Side {
+    /// The three sides.
+    pub const ALL: [Side; 3] = [Side(0), Side(1), Side(2)];
+
+    /// The number: 0, 1 or 2.
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+
+    /// The side after this one, cyclically.
+    pub const fn next(self) -> Side {
+        Side((self.0 + 1) % 3)
+    }
+}
+
+/// The part of a triangle that a closest point lies on ([LW11] Definition 4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Feature {
+    /// In the interior.
+    Face,
+    /// In the interior of an edge.
+    Edge(Side),
+    /// At a corner.
+    Vertex(Side),
+}
+
+/// Twice the area relative to the squared longest edge below which a triangle counts as a segment: its
+/// normal would carry fewer than five digits, while its height is below 1e-11 of its length, so that
+/// leaving out the interior moves no distance by more than that.
+const NEEDLE: f64 = 1e-11;
+
+/// A triangle ready for distance evaluation: corners and unit normal (zero for a needle that has none).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Triangle {
+    /// Corner positions.
+    pub corners: [DVec3; 3],
+    /// Unit normal by the right-hand rule, or zero.
+    pub normal: DVec3,
+    /// Bit k: edge k runs from its second corner to its first, for canonical arithmetic (see `segment`).
+    flipped: u8,
+}
+
+/// The closest point of a triangle to a query point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClosestPoint {
+    /// The closest point.
+    pub point: DVec3,
+    /// Squared distance from the query point.
+    pub distance_squared: f64,
+    /// Where on the triangle.
+    pub feature: Feature,
+}
+
+impl Triangle {
+    /// The triangle with the given corners, whose vertices have the given numbers in their mesh. The
+    /// numbers only fix the direction in which an edge is evaluated: both triangles of an edge then
+    /// compute the same distance to it, to the last bit.
+    pub fn new(corners: [DVec3; 3], vertices: [u32; 3]) -> Self {
+        let [a, b, c] = corners;
+        let cross = (b - a).cross(c - a);
+        let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
+        let length = cross.length();
+        let normal = if length > NEEDLE * longest { cross / length } else { DVec3::ZERO };
+        let flipped = (0..3).filter(|&k| vertices[k] > vertices[(k + 1) % 3]).fold(0, |f, k| f | 1 << k);
+        Triangle { corners, normal, flipped }
+    }
+
+    /// Squared distance from `p`. The same value, bit for bit, as [`closest`](Self::closest) gives.
+    #[inline(always)]
+    pub fn distance_squared(&self, p: DVec3) -> f64 {
+        let outside = self.outside(p);
+        if outside.iter().all(|&x| x < 0.0) {
+            let height = (p - self.corners[0]).dot(self.normal);
+            return height * height;
+        }
+        let mut best = f64::INFINITY;
+        for side in Side::ALL {
+            // The closest edge is one whose plane the point is not inside of; a needle (all zero) takes all three.
+            if outside[side.index()] >= 0.0 {
+                best = best.min(self.segment(side, p).1);
+            }
+        }
+        best
+    }
+
+    /// The closest point to `p`. Of two edges at the same distance the one with the lower number counts.
+    pub fn closest(&self, p: DVec3) -> ClosestPoint {
+        let outside = self.outside(p);
+        if outside.iter().all(|&x| x < 0.0) {
+            let height = (p - self.corners[0]).dot(self.normal);
+            return ClosestPoint {
+                point: p - self.normal * height,
+                distance_squared: height * height,
+                feature: Feature::Face,
+            };
+        }
+        let mut best =
+            ClosestPoint { point: DVec3::NAN, distance_squared: f64::INFINITY, feature: Feature::Face };
+        for side in Side::ALL {
+            if outside[side.index()] >= 0.0 {
+                let (point, distance_squared, feature) = self.segment(side, p);
+                if distance_squared < best.distance_squared {
+                    best = ClosestPoint { point, distance_squared, feature };
+                }
+            }
+        }
+        best
+    }
+
+    /// Parameters (u, v) of `point` on the triangle, t(u, v) = b + u e0 + v e1 with b the first corner,
+    /// e0 and e1 the edges from it to the second and third: u, v >= 0, u + v <= 1.
+    pub fn parameters(&self, point: DVec3) -> [f64; 2] {
+        let twice_area = self.outside(point).map(|x| (-x).max(0.0));
+        let sum = twice_area[0] + twice_area[1] + twice_area[2];
+        if sum > 0.0 {
+            // The weight of a corner is the area opposite to it: edge 2 faces corner 1, edge 0 corner 2.
+            return [twice_area[2] / sum, twice_area[0] / sum];
+        }
+        // A needle: the position along its longest edge.
+        let longest = Side::ALL
+            .into_iter()
+            .max_by(|&j, &k| self.edge(j).length_squared().total_cmp(&self.edge(k).length_squared()))
+            .expect("three sides");
+        let edge = self.edge(longest);
+        let along = (point - self.corners[longest.index()]).dot(edge) / edge.length_squared();
+        let mut weights = [0.0; 3];
+        weights[longest.index()] = 1.0 - along.clamp(0.0, 1.0);
+        weights[longest.next().index()] = along.clamp(0.0, 1.0);
+        [weights[1], weights[2]]
+    }
+
+    /// Edge vector k, from corner k to the next.
+    pub fn edge(&self, side: Side) -> DVec3 {
+        self.corners[side.next().index()] - self.corners[side.index()]
+    }
+
+    /// Per edge how far `p` is beyond the plane through the edge perpendicular to the triangle, positive
+    /// outside, times the edge's length.
+    #[inline(always)]
+    pub fn outside(&self, p: DVec3) -> [f64; 3] {
+        let [a, b, c] = self.corners;
+        [
+            (p - a).dot((b - a).cross(self.normal)),
+            (p - b).dot((c - b).cross(self.normal)),
+            (p - c).dot((a - c).cross(self.normal)),
+        ]
+    }
+
+    /// Closest point on an edge: point, squared distance, feature. Evaluated from the end with the lower
+    /// vertex number, so that the triangles of an edge agree.
+    #[inline(always)]
+    fn segment(&self, side: Side, p: DVec3) -> (DVec3, f64, Feature) {
+        let (first, second) =
+            if self.flipped >> side.0 & 1 == 1 { (side.next(), side) } else { (side, side.next()) };
+        let (a, b) = (self.corners[first.index()], self.corners[second.index()]);
+        let edge = b - a;
+        let along = (p - a).dot(edge);
+        let length_squared = edge.length_squared();
+        let (point, feature) = if along <= 0.0 {
+            (a, Feature::Vertex(first))
+        } else if along >= length_squared {
+            (b, Feature::Vertex(second))
+        } else {
+            (a + edge * (along / length_squared), Feature::Edge(side))
+        };
+        (point, (p - point).length_squared(), feature)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn triangle() -> Triangle {
+        Triangle::new([DVec3::ZERO, DVec3::new(4.0, 0.0, 0.0), DVec3::new(0.0, 3.0, 0.0)], [0, 1, 2])
+    }
+
+    #[test]
+    fn each_of_the_seven_regions() {
+        let t = triangle();
+        let cases = [
+            ([1.0, 1.0, 2.0], Feature::Face, 4.0),
+            ([2.0, -1.0, 1.0], Feature::Edge(Side(0)), 2.0),
+            ([4.0, 4.0, 0.0], Feature::Edge(Side(1)), 6.4 * 6.4 * 0.25),
+            ([-2.0, 1.0, 0.0], Feature::Edge(Side(2)), 4.0),
+            ([-1.0, -1.0, 1.0], Feature::Vertex(Side(0)), 3.0),
+            ([6.0, -1.0, 0.0], Feature::Vertex(Side(1)), 5.0),
+            ([-1.0, 5.0, 0.0], Feature::Vertex(Side(2)), 5.0),
+        ];
+        for (p, feature, d2) in cases {
+            let p = DVec3::from(p);
+            let closest = t.closest(p);
+            assert_eq!(closest.feature, feature, "{p}");
+            assert!((closest.distance_squared - d2).abs() < 1e-12, "{p}: {closest:?}");
+            assert_eq!(closest.distance_squared, t.distance_squared(p));
+        }
+    }
+
+    #[test]
+    fn parameters_give_the_point_back() {
+        let t = triangle();
+        for p in [DVec3::new(1.0, 1.0, 5.0), DVec3::new(2.0, -3.0, 0.0), DVec3::new(-1.0, 9.0, 1.0)] {
+            let point = t.closest(p).point;
+            let [u, v] = t.parameters(point);
+            let back = t.corners[0] + u * (t.corners[1] - t.corners[0]) + v * (t.corners[2] - t.corners[0]);
+            assert!((back - point).length() < 1e-12, "{p}: {u} {v}");
+        }
+    }
+
+    #[test]
+    fn a_needle_is_its_edges() {
+        let corners = [DVec3::ZERO, DVec3::new(1.0, 0.0, 0.0), DVec3::new(0.5, 1e-14, 0.0)];
+        let t = Triangle::new(corners, [0, 1, 2]);
+        assert_eq!(t.normal, DVec3::ZERO);
+        let closest = t.closest(DVec3::new(0.25, 0.0, 2.0));
+        assert!((closest.distance_squared - 4.0).abs() < 1e-12);
+        assert!(matches!(closest.feature, Feature::Edge(_)));
+    }
+
+    #[test]
+    fn both_triangles_of_an_edge_agree_to_the_last_bit() {
+        let a = DVec3::new(0.1, 0.7, -0.3);
+        let b = DVec3::new(1.3, 0.2, 0.9);
+        let left = Triangle::new([a, b, DVec3::new(0.2, -3.0, 0.0)], [5, 3, 8]);
+        let right = Triangle::new([b, a, DVec3::new(0.1, 2.5, 0.4)], [3, 5, 9]);
+        let p = DVec3::new(1.7, 0.45, -0.7);
+        let (l, r) = (left.closest(p), right.closest(p));
+        if matches!((l.feature, r.feature), (Feature::Edge(_), Feature::Edge(_))) {
+            assert_eq!(l.distance_squared, r.distance_squared);
+            assert_eq!(l.point, r.point);
+        } else {
+            panic!("the point was meant to be closest to the edge: {l:?} {r:?}");
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! Building the hierarchy: top-down median splits into packed subtrees, volumes fitted bottom-up.
+
+use super::node::{Level, Node, WIDTH};
+use crate::geom::aabb::Aabb;
+use crate::geom::swept::{Sphere, Swept};
+use crate::geom::triangle::Triangle;
+use crate::mesh::TriMesh;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// The hierarchy. Holds copies of the triangles in its own order, so a query touches nothing else.
+#[derive(Clone, Debug)]
+pub struct Ssvh {
+    pub(super) nodes: Vec<Node>,
+    pub(super) triangles: Vec<Triangle>,
+    /// Mesh triangle number by position in the hierarchy's order.
+    pub(super) ids: Vec<u32>,
+    /// Position in the hierarchy's order by mesh triangle number.
+    positions: Vec<u32>,
+    pub(super) centre: DVec3,
+    /// No coordinate relative to the centre is larger than this.
+    pub(super) extent: f64,
+}
+
+/// Subtrees up to this many triangles get volumes fitted to their corners; larger ones to the volumes of
+/// their children. Larger: slower to build. Smaller: looser volumes where queries spend their time.
+const FIT_EXACTLY: usize = WIDTH * WIDTH;
+
+/// Subtrees from this many triangles on are built in parallel; a task of fewer takes less time than
+/// handing it over.
+const PARALLEL: usize = 2048;
+
+#[derive(Clone, Copy)]
+struct Primitive {
+    centroid: DVec3,
+    id: u32,
+}
+
+impl Ssvh {
+    /// Builds the hierarchy over all triangles of `mesh`. Runs on the current rayon pool; the result does
+    /// not depend on the number of threads.
+    ///
+    /// # Panics
+    /// When the mesh has no triangle, 2^32 - 1 or more of them, or refers to a vertex that does not exist.
+    pub fn new(mesh: &TriMesh) -> Self {
+        let count = mesh.triangles.len();
+        assert!(count > 0 && count < u32::MAX as usize, "the hierarchy needs 1 to 2^32 - 2 triangles");
+        let bounds = Aabb::around(mesh.vertices.iter().map(|&v| DVec3::from(v)));
+        let centre = bounds.centre();
+        let mut primitives: Vec<Primitive> = mesh
+            .triangles
+            .par_iter()
+            .zip(0u32..count as u32)
+            .map(|(t, id)| {
+                let [a, b, c] = t.map(|v| DVec3::from(mesh.vertices[v as usize]) - centre);
+                Primitive { centroid: (a + b + c) / 3.0, id }
+            })
+            .collect();
+        let mut nodes = vec![Node::EMPTY; node_count(count)];
+        Builder { mesh, centre }.build(&mut primitives, &mut nodes, 0, 0);
+
+        let ids: Vec<u32> = primitives.iter().map(|p| p.id).collect();
+        let mut positions = vec![0; count];
+        for (position, &id) in ids.iter().enumerate() {
+            positions[id as usize] = position as u32;
+        }
+        let triangles = ids.par_iter().map(|&id| triangle(mesh, id)).collect();
+        Ssvh { nodes, triangles, ids, positions, centre, extent: bounds.size().max_element() * 0.5 }
+    }
+
+    /// The triangle with mesh number `id`.
+    pub fn triangle(&self, id: u32) -> &Triangle {
+        &self.triangles[self.positions[id as usize] as usize]
+    }
+
+    /// The position of mesh triangle `id` in the hierarchy's order.
+    pub(super) fn position(&self, id: u32) -> usize {
+        self.positions[id as usize] as usize
+    }
+
+    /// The number of triangles.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Never: a hierarchy has at least one triangle.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+}
+
+fn triangle(mesh: &TriMesh, id: u32) -> Triangle {
+    Triangle::new(mesh.corners(id as usize).map(DVec3::from), mesh.triangles[id as usize])
+}
+
+/// Triangles per child: the largest power of eight below `count`, so that all subtrees but the last are
+/// full. Only for `count` above [`WIDTH`].
+fn child_capacity(count: usize) -> usize {
+    let mut capacity = 1;
+    while capacity * WIDTH < count {
+        capacity *= WIDTH;
+    }
+    capacity
+}
+
+/// Nodes of a subtree over `count` triangles.
+fn node_count(count: usize) -> usize {
+    if count <= WIDTH {
+        return 1;
+    }
+    let capacity = child_capacity(count);
+    let last = count - (count - 1) / capacity * capacity;
+    1 + (count - last) / capacity * node_count(capacity) + node_count(last)
+}
+
+struct Builder<'a> {
+    mesh: &'a TriMesh,
+    centre: DVec3,
+}
+
+impl Builder<'_> {
+    /// Builds the subtree over `primitives` into `nodes`, whose first has the number `number`; the first
+    /// primitive has the position `position`. Returns what encloses the subtree: spheres.
+    fn build(
+        &self,
+        primitives: &mut [Primitive],
+        nodes: &mut [Node],
+        number: usize,
+        position: usize,
+    ) -> Vec<Sphere> {
+        let (node, below) = nodes.split_first_mut().expect("a subtree has a node");
+        if primitives.len() <= WIDTH {
+            *node = self.leaf(primitives, position);
+        } else {
+            let capacity = child_capacity(primitives.len());
+            split(primitives, capacity);
+            let mut tasks: Vec<Subtree> = Vec::with_capacity(WIDTH);
+            let mut below = below;
+            let (mut child_number, mut child_position) = (number + 1, position);
+            for child in primitives.chunks_mut(capacity) {
+                let (own, rest) = below.split_at_mut(node_count(child.len()));
+                below = rest;
+                let next = (child_number + own.len(), child_position + child.len());
+                tasks.push(Subtree {
+                    primitives: child,
+                    nodes: own,
+                    number: child_number,
+                    position: child_position,
+                });
+                (child_number, child_position) = next;
+            }
+            let build = |s: Subtree| (s.number, self.build(s.primitives, s.nodes, s.number, s.position));
+            let children: Vec<(usize, Vec<Sphere>)> = if position_count(&tasks) >= PARALLEL {
+                tasks.into_par_iter().map(build).collect()
+            } else {
+                tasks.into_iter().map(build).collect()
+            };
+            node.level = Level::Inner;
+            for (child, spheres) in children {
+                node.push(child as u32, &Swept::around(&spheres), &spheres);
+            }
+        }
+        self.enclosing(primitives, node)
+    }
+
+    fn leaf(&self, primitives: &[Primitive], position: usize) -> Node {
+        let mut node = Node::EMPTY;
+        for (i, primitive) in primitives.iter().enumerate() {
+            let corners = self.corners(primitive.id);
+            node.push((position + i) as u32, &Swept::around_triangle(corners), &corners.map(|c| (c, 0.0)));
+        }
+        node
+    }
+
+    fn corners(&self, id: u32) -> [DVec3; 3] {
+        self.mesh.corners(id as usize).map(|c| DVec3::from(c) - self.centre)
+    }
+
+    /// Spheres whose hull encloses all triangles of the subtree with the root `node`.
+    fn enclosing(&self, primitives: &[Primitive], node: &Node) -> Vec<Sphere> {
+        if primitives.len() <= FIT_EXACTLY {
+            return primitives.iter().flat_map(|p| self.corners(p.id)).map(|c| (c, 0.0)).collect();
+        }
+        (0..node.count as usize)
+            .map(|slot| node.swept(slot))
+            .flat_map(|s| s.corners().map(|c| (c, s.radius)))
+            .collect()
+    }
+}
+
+struct Subtree<'a> {
+    primitives: &'a mut [Primitive],
+    nodes: &'a mut [Node],
+    number: usize,
+    position: usize,
+}
+
+fn position_count(tasks: &[Subtree]) -> usize {
+    tasks.iter().map(|t| t.primitives.len()).sum()
+}
+
+/// Orders `primitives` so that each chunk of `capacity` is compact: median splits across the widest
+/// extent of the centroids, ties by triangle number.
+fn split(primitives: &mut [Primitive], capacity: usize) {
+    let chunks = primitives.len().div_ceil(capacity);
+    if chunks <= 1 {
+        return;
+    }
+    let size = Aabb::around(primitives.iter().map(|p| p.centroid)).size();
+    let axis = size.max_position();
+    let middle = chunks / 2 * capacity;
+    primitives.select_nth_unstable_by(middle, |a, b| {
+        a.centroid[axis].total_cmp(&b.centroid[axis]).then(a.id.cmp(&b.id))
+    });
+    let (left, right) = primitives.split_at_mut(middle);
+    if left.len() + right.len() >= PARALLEL {
+        rayon::join(|| split(left, capacity), || split(right, capacity));
+    } else {
+        split(left, capacity);
+        split(right, capacity);
+    }
+}
