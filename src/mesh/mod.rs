@@ -1,6 +1,8 @@
 //! Triangle meshes: the type, its clean-up, its topology, its measures, and generated models.
 
 mod clean;
+pub mod measure;
+pub mod shapes;
 mod topology;
 mod tri_mesh;
 
