@@ -1,11 +1,43 @@
 //! The one error of the public API; each stage's own error is a variant.
 
+use crate::contour::ContourError;
+use crate::edge::TooManyEdges;
+use crate::io::{LoadError, SaveError};
+use crate::offset::{EmptyResult, InputError, MemoryError, SettingsError};
 use crate::run::{Cancelled, ThreadError};
+use crate::vdb::VdbError;
 
 /// Why an operation failed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
+    /// A file could not be read as a mesh.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// A file could not be written.
+    #[error(transparent)]
+    Save(#[from] SaveError),
+    /// The mesh is not suitable.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// The settings make no sense.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The work would not fit into memory.
+    #[error(transparent)]
+    Memory(#[from] MemoryError),
+    /// The surface crosses too many grid edges.
+    #[error(transparent)]
+    TooManyEdges(#[from] TooManyEdges),
+    /// The result is empty.
+    #[error(transparent)]
+    Empty(#[from] EmptyResult),
+    /// Contouring failed.
+    #[error(transparent)]
+    Contour(#[from] ContourError),
+    /// OpenVDB failed.
+    #[error(transparent)]
+    Vdb(#[from] VdbError),
     /// The run was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

@@ -2,16 +2,16 @@
 
 pub mod error;
 pub mod geom;
-pub mod lattice;
 pub mod run;
 
-pub mod band;
-pub mod contour;
-pub mod distance;
-pub mod edge;
-pub mod filter;
-pub mod io;
+pub mod lattice;
 pub mod mesh;
-pub mod offset;
+pub mod io;
 pub mod ssvh;
+pub mod distance;
+pub mod filter;
+pub mod band;
 pub mod vdb;
+pub mod edge;
+pub mod contour;
+pub mod offset;

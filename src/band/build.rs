@@ -176,13 +176,14 @@ impl Worker<'_> {
         for &(origin, triangle, distance) in &kept[..kept_count] {
             self.nodes(Block { origin, side: 2 }, triangle, distance, &mut leaf, statistics);
         }
-        if leaf.active.iter().any(|&word| word != 0) {
+        let uniform = || leaf.values.iter().all(|v| v.signum() == leaf.values[0].signum());
+        if leaf.active.iter().any(|&word| word != 0) || !uniform() {
             batch.origins.push(origin);
             batch.values.extend_from_slice(&leaf.values);
             batch.active.push(leaf.active);
             batch.closest.extend_from_slice(&leaf.closest);
         } else if leaf.values[0] < 0.0 {
-            // Without active nodes there is no sign change: the leaf is inside as a whole.
+            // Without active nodes there is no sign change, unless the input is not closed.
             batch.inside_blocks.push((origin, LEAF_DIM));
         }
     }

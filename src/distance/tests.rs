@@ -134,3 +134,11 @@ fn the_gradient_points_outward_on_both_sides() {
         assert!((gradient - n).length() < 1e-12, "{p}: {gradient}");
     }
 }
+
+#[test]
+fn the_depth_of_a_box_is_half_its_thickness() {
+    let mesh = cuboid([1.0, 0.3, 2.0], DVec3::new(5.0, 0.1, -3.0));
+    let topology = Topology::new(&mesh);
+    let depth = largest_depth(&SignedDistance::new(&mesh, &topology), 1e-3);
+    assert!((0.3 * 0.998..=0.3 + 1e-12).contains(&depth), "{depth}");
+}

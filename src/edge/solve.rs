@@ -11,7 +11,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 /// The closest triangles of the band's nodes, by leaf of a [`SignField`].
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct NodeTriangles {
     /// Per leaf of the field its position in `ids`, or `u32::MAX` for a leaf of the ring.
     slots: Vec<u32>,
@@ -37,7 +37,8 @@ impl NodeTriangles {
     }
 
     fn get(&self, leaf: LeafId, number: usize) -> Option<u32> {
-        let slot = self.slots[leaf.0 as usize];
+        // Without any ids, all triangles are unknown.
+        let slot = *self.slots.get(leaf.0 as usize)?;
         if slot == u32::MAX {
             return None;
         }

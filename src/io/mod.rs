@@ -1,1 +1,208 @@
-//! io (being written)
+//! Meshes in and out: OBJ, PLY, STL and OFF, chosen by the file's extension.
+//!
+//! | format | read | written |
+//! |---|---|---|
+//! | OBJ | `v` and `f`; polygons, negative numbers, `v/vt/vn` corners, continued lines | text |
+//! | PLY | ascii and binary of both byte orders, further elements and properties, triangle strips | binary, little-endian |
+//! | STL | binary and ascii, several solids | binary |
+//! | OFF | also `COFF`, `NOFF`, `STOFF`; comments; counts on the first line; without keyword | text |
+//!
+//! [`load`] returns the mesh *as it stands in the file*: vertices and triangles in the file's order,
+//! nothing welded, nothing dropped; [`clean`](crate::mesh::clean) is the next step. Polygons are
+//! triangulated, see [`polygon`]. Files are streamed: beside the mesh there is a fixed buffer, except for
+//! OBJ, where the parser holds about 100 bytes for each vertex and face until the end of the file.
+//!
+//! # Promises
+//! - No file makes [`load`] panic, and no header makes it allocate more than the file's size justifies:
+//!   the result is a mesh with finite coordinates, vertex numbers in range and at least one triangle, or
+//!   a [`LoadError`] that names file, place, cause and remedy (fuzzed in `tests.rs`).
+//! - [`save`] replaces an existing file whole and only when the new one is complete, see [`atomic`].
+//! - A mesh that was saved loads again with the same triangles and the same coordinates, rounded to f32
+//!   where the format has f32 (STL; PLY by default).
+
+pub(crate) mod atomic;
+mod error;
+mod obj;
+mod off;
+mod ply;
+mod polygon;
+mod stl;
+#[cfg(test)]
+mod tests;
+mod text;
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
+
+pub use error::{LoadError, Place, Problem, SaveError, SaveProblem, UnknownFormat};
+
+use crate::mesh::TriMesh;
+use error::Fault;
+
+/// A mesh file format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// Wavefront OBJ.
+    Obj,
+    /// Polygon file format (Stanford).
+    Ply,
+    /// Stereolithography.
+    Stl,
+    /// Object file format (Geomview).
+    Off,
+}
+
+impl Format {
+    /// All formats.
+    pub const ALL: [Format; 4] = [Format::Obj, Format::Ply, Format::Stl, Format::Off];
+
+    /// The format that belongs to the extension of `path`, in upper or lower case.
+    ///
+    /// # Errors
+    /// When there is none; the message lists the known extensions.
+    pub fn of(path: &Path) -> Result<Format, UnknownFormat> {
+        let found = path.extension().unwrap_or_default().to_string_lossy();
+        let format = Format::ALL.into_iter().find(|format| format.extension().eq_ignore_ascii_case(&found));
+        format.ok_or_else(|| UnknownFormat { found: found.into_owned() })
+    }
+
+    /// The extension, without the dot.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Format::Obj => "obj",
+            Format::Ply => "ply",
+            Format::Stl => "stl",
+            Format::Off => "off",
+        }
+    }
+}
+
+impl std::fmt::Display for Format {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Format::Obj => "OBJ",
+            Format::Ply => "PLY",
+            Format::Stl => "STL",
+            Format::Off => "OFF",
+        })
+    }
+}
+
+/// The number type of coordinates in a binary file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Coordinates {
+    /// Single precision, which every program reads.
+    #[default]
+    F32,
+    /// Double precision.
+    F64,
+}
+
+/// How a mesh is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SaveOptions {
+    /// The number type of coordinates in PLY. STL knows single precision only; OBJ and OFF are text and
+    /// always carry as many digits as the value needs.
+    pub coordinates: Coordinates,
+}
+
+/// Loads the mesh in the file `path`, unchanged but for polygons, which are triangulated.
+///
+/// # Errors
+/// When the extension is unknown, or the file is missing, empty, cut off, of another format or broken, has
+/// a coordinate that is not finite, a vertex number out of range, or no triangles.
+pub fn load(path: &Path) -> Result<TriMesh, LoadError> {
+    let at = |format, fault: Fault| LoadError {
+        path: path.to_path_buf(),
+        format,
+        place: fault.place,
+        problem: fault.problem,
+    };
+    let format = Format::of(path).map_err(|e| at(None, Problem::Extension(e).into()))?;
+    let open = || {
+        let file = File::open(path)?;
+        match file.metadata()?.is_dir() {
+            true => Err(std::io::Error::from(std::io::ErrorKind::IsADirectory)),
+            false => Ok(file),
+        }
+    };
+    let file = open().map_err(|e| at(Some(format), Problem::Open(e).into()))?;
+    read(file, format).map_err(|fault| at(Some(format), fault))
+}
+
+/// Saves `mesh` in the file `path`, in the format that belongs to the extension. An existing file is
+/// replaced when the new one is complete, and left as it is when something fails.
+///
+/// # Errors
+/// When the extension is unknown, the file cannot be written, or the format cannot hold the mesh.
+pub fn save(mesh: &TriMesh, path: &Path, options: &SaveOptions) -> Result<(), SaveError> {
+    let at = |problem| SaveError { path: path.to_path_buf(), problem };
+    let format = Format::of(path).map_err(|e| at(SaveProblem::Extension(e)))?;
+    check_writable(mesh, format, options).map_err(at)?;
+    atomic::write_atomically(path, |writer| match format {
+        Format::Obj => obj::write(mesh, writer),
+        Format::Ply => ply::write(mesh, options.coordinates, writer),
+        Format::Stl => stl::write(mesh, writer),
+        Format::Off => off::write(mesh, writer),
+    })
+}
+
+impl TriMesh {
+    /// Loads a mesh file, see [`load`].
+    ///
+    /// # Errors
+    /// See [`load`].
+    pub fn load(path: impl AsRef<Path>) -> Result<TriMesh, LoadError> {
+        load(path.as_ref())
+    }
+
+    /// Saves the mesh with the default options, see [`save`].
+    ///
+    /// # Errors
+    /// See [`save`].
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
+        save(self, path.as_ref(), &SaveOptions::default())
+    }
+}
+
+/// Reads a mesh of the given format from the beginning of `source`.
+fn read<R: Read + Seek>(mut source: R, format: Format) -> Result<TriMesh, Fault> {
+    let length = source.seek(SeekFrom::End(0))?;
+    source.rewind()?;
+    if length == 0 {
+        return Err(Problem::Empty.into());
+    }
+    let mesh = match format {
+        Format::Obj => obj::read(source)?,
+        Format::Ply => ply::read(source, length)?,
+        Format::Stl => stl::read(source, length)?,
+        Format::Off => off::read(source, length)?,
+    };
+    match mesh.triangles.is_empty() {
+        true => Err(Problem::NoTriangles.into()),
+        false => Ok(mesh),
+    }
+}
+
+/// Refuses, before the first byte is written, what would make a file that no one can read.
+fn check_writable(mesh: &TriMesh, format: Format, options: &SaveOptions) -> Result<(), SaveProblem> {
+    let single = match format {
+        Format::Stl => true,
+        Format::Ply => options.coordinates == Coordinates::F32,
+        Format::Obj | Format::Off => false,
+    };
+    let fits = |x: f64| if single { (x as f32).is_finite() } else { x.is_finite() };
+    if let Some(vertex) = mesh.vertices.iter().position(|v| !v.iter().all(|&x| fits(x))) {
+        return Err(SaveProblem::Coordinate { vertex, position: mesh.vertices[vertex] });
+    }
+    let in_range = |t: &[u32; 3]| t.iter().all(|&v| (v as usize) < mesh.vertices.len());
+    if let Some(triangle) = mesh.triangles.iter().position(|t| !in_range(t)) {
+        return Err(SaveProblem::VertexNumber { triangle });
+    }
+    // STL counts its triangles in 32 bits.
+    if format == Format::Stl && u32::try_from(mesh.triangles.len()).is_err() {
+        return Err(SaveProblem::TooManyTriangles);
+    }
+    Ok(())
+}

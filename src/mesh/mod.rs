@@ -1,9 +1,11 @@
 //! Triangle meshes: the type, its clean-up, its topology, its measures, and generated models.
 
+mod clean;
 pub mod measure;
 pub mod shapes;
 mod topology;
 mod tri_mesh;
 
+pub use clean::{CleanReport, clean};
 pub use topology::{Defects, Topology};
 pub use tri_mesh::TriMesh;

@@ -1,1 +1,31 @@
-//! vdb (being written)
+//! The narrow band in OpenVDB: grids in memory and `.vdb` files.
+//!
+//! A [`SurfaceGrid`] is a level set that other programs accept: a `FloatGrid` named `surface`, class
+//! level set, whose transform is the lattice's (world = h * index, no offset), with
+//!
+//! ```text
+//!  active voxels    exactly those with abs(phi) < background
+//!  inactive values  exactly +background (outside) or -background (inside), in leaves and tiles
+//!  background       half width * h, rounded up to the next f32: checkLevelSet wants 3 h at least
+//! ```
+//!
+//! phi is in model units, negative inside, and never 0. [`SurfaceGrid::check_level_set`] runs OpenVDB's
+//! own nine tests. A [`ClosestGrid`] of the same leaves holds the ids of the closest triangles.
+//!
+//! Leaves go in and out in batches, as flat slices; [`write`](write()) and [`open_surface`] are the files. Not
+//! promised: that a damaged file (as opposed to a truncated one) is recognised, since the format
+//! has no check sums.
+
+mod bridge;
+mod error;
+mod file;
+mod grid;
+mod info;
+mod leaves;
+
+pub use error::VdbError;
+pub use file::{
+    Compression, MetaValue, VdbOptions, VdbPrecision, open_band, open_closest, open_surface, write,
+};
+pub use grid::{Band, ClosestGrid, SurfaceGrid};
+pub use info::{FileInfo, GridInfo, info};

@@ -1,0 +1,217 @@
+#include "exocarp/cpp/grid.h"
+#include "exocarp/src/vdb/bridge.rs.h"
+
+#include <openvdb/tools/ChangeBackground.h>
+#include <openvdb/tools/Count.h>
+#include <openvdb/tools/Prune.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+namespace exocarp::vdb {
+
+namespace {
+
+constexpr std::size_t LEAF_SIZE = 512;
+constexpr std::size_t MASK_WORDS = 8;
+
+// OpenVDB's tools are quick on a narrow band, and threads are the caller's business.
+constexpr bool THREADED = false;
+
+void require(bool condition, const char* sentence)
+{
+    if (!condition) throw std::invalid_argument(sentence);
+}
+
+openvdb::Coord coord(rust::Slice<const std::int32_t> ijk, std::size_t n)
+{
+    return openvdb::Coord(ijk[3 * n], ijk[3 * n + 1], ijk[3 * n + 2]);
+}
+
+template <class Grid>
+void describe(Grid& grid, const char* name, double voxel, rust::Str creator)
+{
+    grid.setName(name);
+    grid.setCreator(std::string(creator));
+    grid.setTransform(openvdb::math::Transform::createLinearTransform(voxel));
+}
+
+} // namespace
+
+void initialize()
+{
+    static std::once_flag once;
+    std::call_once(once, [] { openvdb::initialize(); });
+}
+
+Placement placement_of(const openvdb::GridBase& grid)
+{
+    const openvdb::math::Transform& t = grid.constTransform();
+    Placement placement{};
+    placement.linear = t.isLinear();
+    const openvdb::Vec3d nodes[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int n = 0; n < 4; ++n) {
+        const openvdb::Vec3d world = t.indexToWorld(nodes[n]);
+        for (int axis = 0; axis < 3; ++axis) placement.frame[3 * n + axis] = world[axis];
+    }
+    return placement;
+}
+
+std::unique_ptr<FloatGrid> new_float_grid(double voxel, float background, rust::Str creator)
+{
+    initialize();
+    auto grid = openvdb::FloatGrid::create(background);
+    describe(*grid, "surface", voxel, creator);
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    return std::make_unique<FloatGrid>(std::make_shared<Held<float>>(grid));
+}
+
+std::unique_ptr<Int32Grid> new_int32_grid(double voxel, rust::Str creator)
+{
+    initialize();
+    auto grid = openvdb::Int32Grid::create(-1);
+    describe(*grid, "closest", voxel, creator);
+    return std::make_unique<Int32Grid>(std::make_shared<Held<std::int32_t>>(grid));
+}
+
+template <class T>
+LeafGrid<T>::LeafGrid(std::shared_ptr<Held<T>> held) : mHeld(std::move(held))
+{
+}
+
+template <class T>
+void LeafGrid<T>::insert(
+    rust::Slice<const std::int32_t> origins,
+    rust::Slice<const T> values,
+    rust::Slice<const std::uint64_t> active)
+{
+    using Leaf = typename Held<T>::Leaf;
+    const std::size_t count = active.size() / MASK_WORDS;
+    require(active.size() == MASK_WORDS * count, "the masks are not of whole leaves");
+    require(origins.size() == 3 * count, "not one origin for each mask");
+    require(values.size() == LEAF_SIZE * count, "not 512 values for each mask");
+
+    mHeld->forget_leaves();
+    auto accessor = mHeld->grid->getAccessor();
+    for (std::size_t n = 0; n < count; ++n) {
+        auto leaf = std::make_unique<Leaf>(coord(origins, n));
+        std::memcpy(leaf->buffer().data(), values.data() + LEAF_SIZE * n, LEAF_SIZE * sizeof(T));
+        typename Leaf::NodeMaskType mask;
+        for (std::size_t w = 0; w < MASK_WORDS; ++w) {
+            mask.template getWord<std::uint64_t>(openvdb::Index(w)) = active[MASK_WORDS * n + w];
+        }
+        leaf->setValueMask(mask);
+        accessor.addLeaf(leaf.release());
+    }
+}
+
+template <class T>
+std::size_t LeafGrid<T>::leaf_count() const
+{
+    return mHeld->leaves().size();
+}
+
+template <class T>
+Counts LeafGrid<T>::counts() const
+{
+    const auto& tree = mHeld->grid->constTree();
+    Counts counts{};
+    counts.active_voxels = openvdb::tools::countActiveVoxels(tree, THREADED);
+    counts.memory = openvdb::tools::memUsage(tree, THREADED);
+    return counts;
+}
+
+template <class T>
+rust::Vec<std::int32_t> LeafGrid<T>::leaf_origins() const
+{
+    const auto& leaves = mHeld->leaves();
+    rust::Vec<std::int32_t> origins;
+    origins.reserve(3 * leaves.size());
+    for (const auto* leaf : leaves) {
+        for (int axis = 0; axis < 3; ++axis) origins.push_back(leaf->origin()[axis]);
+    }
+    return origins;
+}
+
+template <class T>
+void LeafGrid<T>::read(
+    std::size_t first, rust::Slice<T> values, rust::Slice<std::uint64_t> active) const
+{
+    const auto& leaves = mHeld->leaves();
+    const std::size_t count = active.size() / MASK_WORDS;
+    require(active.size() == MASK_WORDS * count, "the masks are not of whole leaves");
+    require(values.size() == LEAF_SIZE * count, "not 512 values for each mask");
+    require(first <= leaves.size() && count <= leaves.size() - first, "there are not so many leaves");
+
+    for (std::size_t n = 0; n < count; ++n) {
+        const auto& leaf = *leaves[first + n];
+        std::memcpy(values.data() + LEAF_SIZE * n, leaf.buffer().data(), LEAF_SIZE * sizeof(T));
+        for (std::size_t w = 0; w < MASK_WORDS; ++w) {
+            active[MASK_WORDS * n + w] =
+                leaf.getValueMask().template getWord<std::uint64_t>(openvdb::Index(w));
+        }
+    }
+}
+
+template class LeafGrid<float>;
+template class LeafGrid<std::int32_t>;
+
+void FloatGrid::fill(
+    rust::Slice<const std::int32_t> origins, rust::Slice<const std::uint32_t> sides, float value)
+{
+    require(origins.size() == 3 * sides.size(), "not one origin for each side");
+    mHeld->forget_leaves();
+    for (std::size_t n = 0; n < sides.size(); ++n) {
+        const auto cube = openvdb::CoordBBox::createCube(coord(origins, n), sides[n]);
+        mHeld->grid->tree().sparseFill(cube, value, /*active=*/false);
+    }
+}
+
+void FloatGrid::prune()
+{
+    mHeld->forget_leaves();
+    openvdb::tools::pruneTiles(mHeld->grid->tree(), /*tolerance=*/0.0f, THREADED);
+}
+
+void FloatGrid::inside(rust::Slice<const std::int32_t> nodes, rust::Slice<bool> inside) const
+{
+    require(nodes.size() == 3 * inside.size(), "not one place for each node");
+    const auto accessor = mHeld->grid->getConstAccessor();
+    for (std::size_t n = 0; n < inside.size(); ++n) {
+        inside[n] = accessor.getValue(coord(nodes, n)) < 0.0f;
+    }
+}
+
+float FloatGrid::background() const
+{
+    return mHeld->grid->background();
+}
+
+bool FloatGrid::is_fog() const
+{
+    return mHeld->grid->getGridClass() == openvdb::GRID_FOG_VOLUME;
+}
+
+Placement FloatGrid::placement() const
+{
+    return placement_of(*mHeld->grid);
+}
+
+std::unique_ptr<FloatGrid> FloatGrid::half_copy(float background) const
+{
+    // The smallest half float; anything smaller would become 0 and lose its sign.
+    constexpr float SMALLEST = 5.9604645e-8f;
+    auto copy = mHeld->grid->deepCopy();
+    openvdb::tools::changeLevelSetBackground(copy->tree(), background, THREADED);
+    for (auto leaf = copy->tree().beginLeaf(); leaf; ++leaf) {
+        for (auto value = leaf->beginValueOn(); value; ++value) {
+            value.setValue(std::copysign(std::max(std::abs(*value), SMALLEST), *value));
+        }
+    }
+    copy->setSaveFloatAsHalf(true);
+    return std::make_unique<FloatGrid>(std::make_shared<Held<float>>(copy));
+}
+
+} // namespace exocarp::vdb

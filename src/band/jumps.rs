@@ -1,0 +1,74 @@
+//! Leaves where the sign of the distance jumps far from the surface, which happens when the input is not
+//! closed: there the offset solid is closed along the jump.
+
+use super::LeafBatch;
+use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE};
+use std::collections::HashSet;
+
+/// Uniform inside leaves that touch, across a face, a region which is outside as a whole. Without them the
+/// sign change between the two would lie in no leaf. `leaves` are those of the band, `inside_blocks` what
+/// it found inside as a whole, `inside_at` says whether nodes are inside.
+pub fn leaves_at_jumps(
+    leaves: &[Ijk],
+    inside_blocks: &[(Ijk, i32)],
+    background: f32,
+    inside_at: impl FnOnce(&[Ijk]) -> Vec<bool>,
+) -> LeafBatch {
+    let leaves: HashSet<Ijk> = leaves.iter().copied().collect();
+    let mut pairs: Vec<(Ijk, Ijk)> = Vec::new();
+    for &(origin, side) in inside_blocks {
+        for (leaf, neighbour) in border(origin, side) {
+            if !leaves.contains(&neighbour) {
+                pairs.push((leaf, neighbour));
+            }
+        }
+    }
+    let neighbours: Vec<Ijk> = pairs.iter().map(|&(_, neighbour)| neighbour).collect();
+    let mut origins: Vec<Ijk> =
+        pairs.iter().zip(inside_at(&neighbours)).filter(|(_, inside)| !inside).map(|(&(leaf, _), _)| leaf).collect();
+    origins.sort_unstable();
+    origins.dedup();
+    let count = origins.len();
+    LeafBatch {
+        origins,
+        values: vec![-background; count * LEAF_SIZE],
+        active: vec![[0; 8]; count],
+        closest: vec![-1; count * LEAF_SIZE],
+        inside_blocks: Vec::new(),
+    }
+}
+
+/// The leaves on the six faces of a block, each with its neighbour beyond the face.
+fn border(origin: Ijk, side: i32) -> impl Iterator<Item = (Ijk, Ijk)> {
+    let n = side / LEAF_DIM;
+    (0..3usize).flat_map(move |axis| {
+        [(0, -1), (n - 1, 1)].into_iter().flat_map(move |(layer, step)| {
+            (0..n * n).map(move |i| {
+                let mut at = [0; 3];
+                at[axis] = layer;
+                at[(axis + 1) % 3] = i / n;
+                at[(axis + 2) % 3] = i % n;
+                let leaf = origin + Ijk(at.map(|x| x * LEAF_DIM));
+                let mut delta = [0; 3];
+                delta[axis] = step * LEAF_DIM;
+                (leaf, leaf + Ijk(delta))
+            })
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_faces_towards_the_outside_get_leaves() {
+        // A block of 2 x 2 x 2 leaves; everything with x < 0 is outside, the rest inside or in leaves.
+        let leaves = [Ijk::new(-8, 0, 0)];
+        let batch = leaves_at_jumps(&leaves, &[(Ijk::default(), 16)], 0.5, |nodes| {
+            nodes.iter().map(|n| n.0[0] >= 0).collect()
+        });
+        assert_eq!(batch.origins, [Ijk::new(0, 0, 8), Ijk::new(0, 8, 0), Ijk::new(0, 8, 8)]);
+        assert!(batch.values.iter().all(|&v| v == -0.5));
+    }
+}

@@ -1,0 +1,221 @@
+//! What can go wrong with a mesh file: each error is one sentence with file, place, cause and remedy.
+
+use std::path::PathBuf;
+
+use super::Format;
+
+/// Why a mesh file could not be loaded.
+#[derive(Debug, thiserror::Error)]
+#[error("{}{place}: {problem}", .path.display())]
+pub struct LoadError {
+    /// The file.
+    pub path: PathBuf,
+    /// Its format; `None` when the extension is not known.
+    pub format: Option<Format>,
+    /// Where in the file.
+    pub place: Place,
+    /// What is wrong.
+    pub problem: Problem,
+}
+
+/// The extension of a file belongs to no known format.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the extension {found:?} is not known; use .obj, .ply, .stl or .off")]
+pub struct UnknownFormat {
+    /// The extension, without the dot; empty when there is none.
+    pub found: String,
+}
+
+/// Where in a file something is wrong.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// The file as a whole.
+    File,
+    /// A line of a text file, counted from 1.
+    Line(u64),
+    /// A byte of a binary file, counted from 0.
+    Byte(u64),
+    /// An element of a binary file.
+    Element {
+        /// "vertex", "face", "triangle" or the name in the PLY header.
+        name: String,
+        /// Its number among the elements of its kind, counted from 0.
+        number: u64,
+        /// The byte at which reading it stopped, counted from 0.
+        byte: u64,
+    },
+}
+
+impl std::fmt::Display for Place {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Place::File => Ok(()),
+            Place::Line(line) => write!(f, ", line {line}"),
+            Place::Byte(byte) => write!(f, ", byte {byte}"),
+            Place::Element { name, number, byte } => write!(f, ", {name} {number} (byte {byte})"),
+        }
+    }
+}
+
+/// What is wrong with a file that could not be loaded.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Problem {
+    /// The file cannot be opened.
+    #[error("the file cannot be opened ({0}); check the path and the permissions")]
+    Open(std::io::Error),
+    /// Reading failed.
+    #[error("reading failed ({0}); check the disk or copy the file again")]
+    Read(std::io::Error),
+    /// The extension belongs to no known format.
+    #[error(transparent)]
+    Extension(#[from] UnknownFormat),
+    /// The file has no content.
+    #[error("the file is empty; export the model again")]
+    Empty,
+    /// The content is of another format than the extension says.
+    #[error("this is not {format} ({reason}); check that the extension fits the content")]
+    WrongFormat {
+        /// The format that the extension stands for.
+        format: Format,
+        /// What gave it away.
+        reason: String,
+    },
+    /// The file ends too early.
+    #[error("the file ends before {missing}; it was cut off, get a complete copy")]
+    Truncated {
+        /// What should have followed.
+        missing: String,
+    },
+    /// Something else stands where a certain thing belongs.
+    #[error("{found} stands where {expected} belongs; correct it or export the model again")]
+    Syntax {
+        /// What stands there.
+        found: String,
+        /// What belongs there.
+        expected: String,
+    },
+    /// A coordinate is infinite or not a number.
+    #[error("the coordinate {0} is not finite; repair the model in the program that made it")]
+    NonFinite(String),
+    /// A face names a vertex that is not there.
+    #[error("a face names vertex {found}, but the vertices are {first} to {last}; repair the model")]
+    VertexNumber {
+        /// The number in the file.
+        found: String,
+        /// The first vertex number of the format.
+        first: u64,
+        /// The last vertex number of the file (`first - 1` without vertices).
+        last: i64,
+    },
+    /// The file is in order but has no triangles.
+    #[error("the file has no triangles; export a surface mesh, not points or curves")]
+    NoTriangles,
+    /// A variant of the format that is not read.
+    #[error("{what} is not supported; {remedy}")]
+    Unsupported {
+        /// The variant.
+        what: String,
+        /// What to do instead.
+        remedy: &'static str,
+    },
+    /// More vertices than 32-bit numbers can name.
+    #[error("the file has more than {} vertices; split the model", u32::MAX)]
+    TooManyVertices,
+}
+
+/// A [`Problem`] at its [`Place`]: a [`LoadError`] before the path is known.
+#[derive(Debug)]
+pub(super) struct Fault {
+    pub(super) place: Place,
+    pub(super) problem: Problem,
+}
+
+impl From<Problem> for Fault {
+    fn from(problem: Problem) -> Self {
+        Fault { place: Place::File, problem }
+    }
+}
+
+impl From<std::io::Error> for Fault {
+    fn from(error: std::io::Error) -> Self {
+        Problem::Read(error).into()
+    }
+}
+
+impl Problem {
+    /// This problem on line `line`.
+    pub(super) fn on_line(self, line: u64) -> Fault {
+        Fault { place: Place::Line(line), problem: self }
+    }
+
+    /// A [`Problem::Syntax`] that quotes `found`.
+    pub(super) fn syntax(found: &[u8], expected: impl Into<String>) -> Problem {
+        Problem::Syntax { found: quote(found), expected: expected.into() }
+    }
+
+    /// A [`Problem::Truncated`].
+    pub(super) fn truncated(missing: impl Into<String>) -> Problem {
+        Problem::Truncated { missing: missing.into() }
+    }
+}
+
+/// A piece of the file, in quotes, printable, and short enough for a sentence.
+pub(super) fn quote(bytes: &[u8]) -> String {
+    /// Longer pieces would bury the sentence; shorter ones would cut ordinary lines of three numbers.
+    const LONGEST: usize = 60;
+    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * LONGEST)]);
+    let text = text.trim();
+    let mut quoted: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();
+    if text.chars().count() > LONGEST {
+        quoted.push_str("...");
+    }
+    format!("\"{quoted}\"")
+}
+
+/// Why a file could not be saved.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {problem}", .path.display())]
+pub struct SaveError {
+    /// The file that was to be written.
+    pub path: PathBuf,
+    /// What is wrong.
+    pub problem: SaveProblem,
+}
+
+/// What is wrong with a file that could not be saved.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SaveProblem {
+    /// The extension belongs to no known format.
+    #[error(transparent)]
+    Extension(#[from] UnknownFormat),
+    /// No file can be created in the directory.
+    #[error("no file can be created there ({0}); check that the directory exists and is writable")]
+    Create(std::io::Error),
+    /// Writing failed.
+    #[error("writing failed ({0}); check the free space, the output was left as it was")]
+    Write(std::io::Error),
+    /// The complete file could not take its place.
+    #[error("the complete file could not be put in place ({0}); check the permissions of the target")]
+    Replace(std::io::Error),
+    /// A coordinate is not finite, or too large for single precision.
+    #[error(
+        "vertex {vertex} at {position:?} does not fit the number type of the file; write f64 if the model is that large"
+    )]
+    Coordinate {
+        /// The vertex.
+        vertex: usize,
+        /// Its position.
+        position: [f64; 3],
+    },
+    /// A triangle names a vertex that is not there.
+    #[error("triangle {triangle} names a vertex that the mesh does not have; build the mesh anew")]
+    VertexNumber {
+        /// The triangle.
+        triangle: usize,
+    },
+    /// More triangles than STL can count.
+    #[error("the mesh has more than {} triangles, the limit of STL; write .ply instead", u32::MAX)]
+    TooManyTriangles,
+}

@@ -1,0 +1,89 @@
+//! The body of an ascii PLY file.
+//!
+//! Not through `ply-rs-bw`, whose grammar refuses what files in the wild have: "1." and ".5", "nan" in a
+//! property that is of no interest, blank lines, and elements that go on on the next line.
+
+use std::io::BufRead;
+
+use ply_rs_bw::ply::PropertyType;
+
+use super::super::Format;
+use super::super::error::{Fault, Problem};
+use super::super::text::Text;
+use super::header::Header;
+use super::{Body, CORNER_LISTS, Role};
+
+/// Reads the body, which is `rest` bytes long.
+pub(super) fn read<R: BufRead>(reader: R, header: &Header, rest: u64, body: &mut Body) -> Result<(), Fault> {
+    let mut text = Text::new(reader, Format::Ply, header.lines);
+    let mut numbers = Vec::new();
+    let mut corners = Vec::new();
+    for (role, element) in &header.elements {
+        if element.properties.is_empty() {
+            continue;
+        }
+        // A digit and a space for each property.
+        body.reserve(*role, element.count as u64, rest, 2 * element.properties.len() as u64);
+        for i in 0..element.count as u64 {
+            let mut position = [f64::NAN; 3];
+            numbers.clear();
+            for (name, property) in &element.properties {
+                let done = match property.data_type {
+                    PropertyType::Scalar(_) => read_scalar(&mut text, *role, name, &mut position),
+                    PropertyType::List(..) => read_list(&mut text, *role, name, &mut numbers),
+                };
+                done.map_err(|fault| say_which(fault, &element.name, i, element.count))?;
+            }
+            text.skip_rest_of_line();
+            let done = match role {
+                Role::Vertex => body.push_vertex(position),
+                Role::Face | Role::Strips => body.push_corners(*role, &numbers, &mut corners),
+                Role::Other => Ok(()),
+            };
+            done.map_err(|problem| text.fault(problem))?;
+        }
+    }
+    Ok(())
+}
+
+fn read_scalar<R: BufRead>(
+    text: &mut Text<R>,
+    role: Role,
+    name: &str,
+    position: &mut [f64; 3],
+) -> Result<(), Fault> {
+    let axis = ["x", "y", "z"].into_iter().position(|axis| axis == name && role == Role::Vertex);
+    match axis {
+        Some(axis) => position[axis] = text.coordinate("a coordinate")?,
+        None => {
+            text.expect_word("a property")?;
+        }
+    }
+    Ok(())
+}
+
+fn read_list<R: BufRead>(
+    text: &mut Text<R>,
+    role: Role,
+    name: &str,
+    numbers: &mut Vec<i64>,
+) -> Result<(), Fault> {
+    let wanted = matches!(role, Role::Face | Role::Strips) && CORNER_LISTS.contains(&name);
+    for _ in 0..text.count("the length of a list")? {
+        match wanted {
+            true => numbers.push(text.integer("a vertex number")?),
+            false => {
+                text.expect_word("a list entry")?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Says at which element a file was cut off.
+fn say_which(mut fault: Fault, name: &str, i: u64, count: usize) -> Fault {
+    if let Problem::Truncated { missing } = &mut fault.problem {
+        *missing = format!("{missing} of {name} {i} (the header promises {count})");
+    }
+    fault
+}

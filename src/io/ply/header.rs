@@ -1,0 +1,153 @@
+//! The header of a PLY file.
+//!
+//! `ply-rs-bw` parses it. Comments are taken out before: they may be in any encoding. What it does not
+//! mind is checked here: elements and properties of the same name, which it would merge.
+
+use std::collections::HashSet;
+use std::io::{BufRead, Read};
+
+use ply_rs_bw::parser::{Parser, Reader};
+use ply_rs_bw::ply::{ElementDef, Encoding, PropertyType};
+
+use super::super::Format;
+use super::super::error::{Fault, Problem, quote};
+use super::binary::Skipped;
+use super::{CORNER_LISTS, Role};
+
+/// The longest header that is read, comments included. Real ones are a few hundred bytes; a file that has
+/// no end of the header is not read to its end to find out.
+const LONGEST_HEADER: u64 = 1 << 20;
+
+/// What the header says.
+pub(super) struct Header {
+    pub(super) encoding: Encoding,
+    pub(super) elements: Vec<(Role, ElementDef)>,
+    pub(super) vertex_count: u64,
+    /// Its length in bytes.
+    pub(super) bytes: u64,
+    /// Its length in lines.
+    pub(super) lines: u64,
+}
+
+/// Reads the header; `reader` then stands on the first byte of the body.
+pub(super) fn read<R: BufRead>(reader: &mut R) -> Result<Header, Fault> {
+    let mut kept = Kept::default();
+    let (mut bytes, mut lines) = (0u64, 0u64);
+    let mut line = Vec::new();
+    loop {
+        line.clear();
+        let read = reader.by_ref().take(LONGEST_HEADER - bytes).read_until(b'\n', &mut line)? as u64;
+        bytes += read;
+        lines += 1;
+        let words = line.trim_ascii();
+        if lines == 1 && words != b"ply" {
+            let reason = format!("it begins with {}", quote(words));
+            return Err(Problem::WrongFormat { format: Format::Ply, reason }.on_line(1));
+        }
+        if read == 0 {
+            return Err(Problem::truncated("\"end_header\"").on_line(lines));
+        }
+        kept.push(words, lines)?;
+        // The body begins behind the line end, which a file that was cut off does not have.
+        if words == b"end_header" {
+            break;
+        }
+    }
+    let header = Parser::<Skipped>::new()
+        .read_header(&mut Reader::new(kept.text.as_bytes()))
+        .map_err(|error| kept.explain(&error))?;
+    let elements: Vec<_> =
+        header.elements.into_iter().map(|(_, element)| (role(&element.name), element)).collect();
+    let last_line = |problem: Problem| problem.on_line(lines);
+    for (role, element) in &elements {
+        check(*role, element).map_err(last_line)?;
+    }
+    let vertices = elements.iter().find(|(role, _)| *role == Role::Vertex);
+    let vertex_count = vertices.map_or(0, |(_, element)| element.count as u64);
+    if u32::try_from(vertex_count).is_err() {
+        return Err(last_line(Problem::TooManyVertices));
+    }
+    Ok(Header { encoding: header.encoding, elements, vertex_count, bytes, lines })
+}
+
+/// The header without its comments.
+#[derive(Default)]
+struct Kept {
+    text: String,
+    /// The line of the file that each line of `text` is.
+    lines: Vec<u64>,
+    /// The elements, and the properties of the last one.
+    elements: HashSet<Vec<u8>>,
+    properties: HashSet<Vec<u8>>,
+}
+
+impl Kept {
+    fn push(&mut self, line: &[u8], number: u64) -> Result<(), Fault> {
+        let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        let keyword = words.next().unwrap_or_default();
+        let is_new = match keyword {
+            b"" | b"comment" | b"obj_info" => return Ok(()),
+            b"element" => {
+                self.properties.clear();
+                self.elements.insert(words.next().unwrap_or_default().to_vec())
+            }
+            b"property" => self.properties.insert(words.next_back().unwrap_or_default().to_vec()),
+            _ => true,
+        };
+        if !is_new {
+            return Err(Problem::syntax(line, "a name that was not used before").on_line(number));
+        }
+        let text = std::str::from_utf8(line);
+        let text = text.map_err(|_| Problem::syntax(line, "a header line").on_line(number))?;
+        self.text.push_str(text);
+        self.text.push('\n');
+        self.lines.push(number);
+        Ok(())
+    }
+
+    /// The line that `ply-rs-bw` does not understand.
+    fn explain(&self, error: &ply_rs_bw::parser::ParseError) -> Fault {
+        let line = error.line().and_then(|line| line.checked_sub(1)).filter(|&i| i < self.lines.len());
+        match line {
+            Some(i) => {
+                let text = self.text.lines().nth(i).unwrap_or_default();
+                Problem::syntax(text.as_bytes(), "a PLY header line (format, element, property)")
+                    .on_line(self.lines[i])
+            }
+            None => Problem::syntax(b"end_header", "a line \"format ascii 1.0\" or a binary format")
+                .on_line(self.lines.last().copied().unwrap_or(1)),
+        }
+    }
+}
+
+fn role(name: &str) -> Role {
+    match name {
+        "vertex" => Role::Vertex,
+        "face" => Role::Face,
+        "tristrips" => Role::Strips,
+        _ => Role::Other,
+    }
+}
+
+/// Whether the element has what its role needs.
+fn check(role: Role, element: &ElementDef) -> Result<(), Problem> {
+    let unsupported = |what: String| Problem::Unsupported { what, remedy: "export the mesh again" };
+    let is_scalar = |name: &str| {
+        matches!(element.properties.get(name).map(|p| &p.data_type), Some(PropertyType::Scalar(_)))
+    };
+    let is_list = |name: &&str| {
+        matches!(element.properties.get(*name).map(|p| &p.data_type), Some(PropertyType::List(..)))
+    };
+    match role {
+        Role::Vertex => match ["x", "y", "z"].into_iter().find(|name| !is_scalar(name)) {
+            None => Ok(()),
+            Some(name) => Err(unsupported(format!("a vertex without the coordinate \"{name}\""))),
+        },
+        Role::Face | Role::Strips => match CORNER_LISTS.iter().filter(|name| is_list(name)).count() {
+            1 => Ok(()),
+            0 => Err(unsupported(format!("a {} without the list \"vertex_indices\"", element.name))),
+            _ => Err(unsupported(format!("a {} with two lists of vertices", element.name))),
+        },
+        Role::Other => Ok(()),
+    }
+}

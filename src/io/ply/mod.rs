@@ -1,0 +1,149 @@
+//! PLY: the header, the binary body and the ascii body in a file each, and the writer.
+//!
+//! Read: `x y z` of element `vertex`, the list `vertex_indices` or `vertex_index` of element `face`, and
+//! the same list of element `tristrips` (-1 starts a new strip). All else is skipped. Header and binary
+//! body go through `ply-rs-bw`. Numbers in an ascii body are taken with all their digits, also where the
+//! header calls them `float`.
+
+mod ascii;
+mod binary;
+mod header;
+
+use std::io::{BufReader, Read, Seek, Write};
+
+use ply_rs_bw::ply::Encoding;
+
+use super::Coordinates;
+use super::error::{Fault, Problem, quote};
+use super::polygon::PolygonMesh;
+use crate::mesh::TriMesh;
+
+/// Reads a mesh from a file of `length` bytes.
+pub(super) fn read<R: Read + Seek>(source: R, length: u64) -> Result<TriMesh, Fault> {
+    let mut reader = BufReader::with_capacity(1 << 16, source);
+    let header = header::read(&mut reader)?;
+    let mut body = Body { mesh: PolygonMesh::default(), vertex_count: header.vertex_count };
+    let rest = length.saturating_sub(header.bytes);
+    match header.encoding {
+        Encoding::Ascii => ascii::read(reader, &header, rest, &mut body)?,
+        Encoding::BinaryLittleEndian | Encoding::BinaryBigEndian => {
+            binary::read(reader, &header, rest, &mut body)?;
+        }
+    }
+    Ok(body.mesh.finish())
+}
+
+/// What an element is to us.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Role {
+    /// Its `x`, `y`, `z` are a vertex.
+    Vertex,
+    /// Its list of vertex numbers is a face.
+    Face,
+    /// Its list of vertex numbers is a sequence of triangle strips.
+    Strips,
+    /// Nothing.
+    Other,
+}
+
+/// The names of the list of vertex numbers.
+const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
+
+/// The mesh in the making. The faces may come before the vertices, so numbers are checked against the
+/// header.
+struct Body {
+    mesh: PolygonMesh,
+    vertex_count: u64,
+}
+
+impl Body {
+    /// Makes room for `count` elements, but not for more than `rest` bytes of file can hold.
+    fn reserve(&mut self, role: Role, count: u64, rest: u64, shortest: u64) {
+        let count = count.min(rest / shortest.max(1)) as usize;
+        match role {
+            Role::Vertex => self.mesh.vertices.reserve_exact(count),
+            Role::Face => self.mesh.triangles.reserve_exact(count),
+            Role::Strips | Role::Other => {}
+        }
+    }
+
+    fn push_vertex(&mut self, position: [f64; 3]) -> Result<(), Problem> {
+        if let Some(x) = position.iter().find(|x| !x.is_finite()) {
+            return Err(Problem::NonFinite(x.to_string()));
+        }
+        self.mesh.vertices.push(position);
+        Ok(())
+    }
+
+    /// Appends a face or a list of strips. `corners` is changed.
+    fn push_corners(&mut self, role: Role, numbers: &[i64], corners: &mut Vec<u32>) -> Result<(), Problem> {
+        corners.clear();
+        for &number in numbers {
+            match u32::try_from(number) {
+                Ok(v) if u64::from(v) < self.vertex_count => corners.push(v),
+                _ if role == Role::Strips && number == -1 => {
+                    self.push_strip(corners);
+                    corners.clear();
+                }
+                _ => {
+                    let found = quote(number.to_string().as_bytes());
+                    let last = self.vertex_count as i64 - 1;
+                    return Err(Problem::VertexNumber { found, first: 0, last });
+                }
+            }
+        }
+        match role {
+            Role::Strips => self.push_strip(corners),
+            _ => self.mesh.push(corners),
+        }
+        Ok(())
+    }
+
+    /// Every second triangle of a strip is turned around. Repeated corners stitch strips together.
+    fn push_strip(&mut self, strip: &[u32]) {
+        for (i, w) in strip.windows(3).enumerate() {
+            let [a, b, c] = [w[0], w[1], w[2]];
+            if a != b && b != c && c != a {
+                self.mesh.push(&if i % 2 == 0 { [a, b, c] } else { [b, a, c] });
+            }
+        }
+    }
+}
+
+/// Writes a mesh, binary and little-endian.
+pub(super) fn write(
+    mesh: &TriMesh,
+    coordinates: Coordinates,
+    writer: &mut impl Write,
+) -> std::io::Result<()> {
+    // `int` is what most readers expect; it cannot name the upper half of all vertices.
+    let index = if mesh.vertices.len() <= i32::MAX as usize { "int" } else { "uint" };
+    let number = match coordinates {
+        Coordinates::F32 => "float",
+        Coordinates::F64 => "double",
+    };
+    write!(writer, "ply\nformat binary_little_endian 1.0\n")?;
+    writeln!(writer, "comment written by exocarp {}", env!("CARGO_PKG_VERSION"))?;
+    writeln!(writer, "element vertex {}", mesh.vertices.len())?;
+    for name in ["x", "y", "z"] {
+        writeln!(writer, "property {number} {name}")?;
+    }
+    writeln!(writer, "element face {}", mesh.triangles.len())?;
+    write!(writer, "property list uchar {index} vertex_indices\nend_header\n")?;
+    for vertex in &mesh.vertices {
+        for &x in vertex {
+            match coordinates {
+                Coordinates::F32 => writer.write_all(&(x as f32).to_le_bytes())?,
+                Coordinates::F64 => writer.write_all(&x.to_le_bytes())?,
+            }
+        }
+    }
+    for triangle in &mesh.triangles {
+        let mut record = [3; 13];
+        for (place, v) in record[1..].chunks_exact_mut(4).zip(triangle) {
+            place.copy_from_slice(&v.to_le_bytes());
+        }
+        writer.write_all(&record)?;
+    }
+    Ok(())
+}

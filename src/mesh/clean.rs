@@ -1,0 +1,179 @@
+//! Makes a mesh as files have it into one that has a topology: equal positions become one vertex, and
+//! triangles that bound nothing go.
+
+use std::fmt;
+
+use hashbrown::HashTable;
+use hashbrown::hash_table::Entry;
+use rayon::prelude::*;
+use robust::{Coord, orient2d};
+use serde::Serialize;
+
+use super::TriMesh;
+
+/// What [`clean`] did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct CleanReport {
+    /// Vertices that were merged into an earlier one at the same position.
+    pub welded_vertices: usize,
+    /// Triangles without area that were dropped.
+    pub degenerate_triangles: usize,
+    /// Triangles that were dropped because an earlier one has the same corners and orientation.
+    pub duplicate_triangles: usize,
+    /// Vertices that were dropped because no triangle has them (any more).
+    pub unreferenced_vertices: usize,
+}
+
+impl CleanReport {
+    /// Whether there was nothing to do.
+    pub fn is_clean(&self) -> bool {
+        *self == CleanReport::default()
+    }
+}
+
+impl fmt::Display for CleanReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.is_clean() {
+            return f.write_str("nothing to clean");
+        }
+        let plural = |n: usize, one: &str, many: &str| format!("{n} {}", if n == 1 { one } else { many });
+        let parts = [
+            ("welded", self.welded_vertices, "vertex", "vertices"),
+            ("dropped", self.degenerate_triangles, "degenerate triangle", "degenerate triangles"),
+            ("dropped", self.duplicate_triangles, "duplicate triangle", "duplicate triangles"),
+            ("dropped", self.unreferenced_vertices, "unreferenced vertex", "unreferenced vertices"),
+        ];
+        let mut last_verb = "";
+        for (verb, count, one, many) in parts.into_iter().filter(|part| part.1 > 0) {
+            let separator = if last_verb.is_empty() { "" } else { ", " };
+            let verb_again = if verb == last_verb { String::new() } else { format!("{verb} ") };
+            write!(f, "{separator}{verb_again}{}", plural(count, one, many))?;
+            last_verb = verb;
+        }
+        Ok(())
+    }
+}
+
+/// Cleans a mesh, in this order:
+///
+/// 1. Vertices at exactly the same position become the first of them (-0 equals 0). No tolerance: a near
+///    vertex is another vertex.
+/// 2. Triangles with two equal corners or exactly no area are dropped. The area is decided by exact
+///    predicates, so a sliver stays however thin it is.
+/// 3. Triangles with the corners and the orientation of an earlier one are dropped. Two triangles with the
+///    same corners and *opposite* orientation both stay: together they are a fin without thickness, a
+///    surface that was drawn from both sides. Dropping one would leave a sheet with a border where the
+///    file has a closed surface, dropping both a hole where the file has something.
+/// 4. Vertices that no triangle has are dropped.
+///
+/// What remains keeps its order, so the result depends on nothing but the mesh. Dropping a sliver without
+/// area opens the surface in the sense of topology (its neighbours no longer share an edge), though not a
+/// gap in space.
+///
+/// # Panics
+/// When a triangle names a vertex that the mesh does not have; meshes from [`load`](crate::io::load) never do.
+pub fn clean(mesh: TriMesh) -> (TriMesh, CleanReport) {
+    let TriMesh { mut vertices, mut triangles } = mesh;
+    let mut report = CleanReport::default();
+
+    let first = first_at_position(&vertices);
+    let merged = |(i, &v): (usize, &u32)| i != v as usize;
+    report.welded_vertices = first.par_iter().enumerate().filter(|&(i, v)| merged((i, v))).count();
+    if report.welded_vertices > 0 {
+        triangles.par_iter_mut().for_each(|t| *t = t.map(|v| first[v as usize]));
+    }
+
+    let before = triangles.len();
+    triangles = triangles.into_par_iter().filter(|t| !is_degenerate(*t, &vertices)).collect();
+    report.degenerate_triangles = before - triangles.len();
+
+    report.duplicate_triangles = drop_duplicates(&mut triangles);
+    report.unreferenced_vertices = drop_unreferenced(&mut vertices, &mut triangles) - report.welded_vertices;
+    (TriMesh { vertices, triangles }, report)
+}
+
+/// For each vertex the first one at the same position.
+fn first_at_position(vertices: &[[f64; 3]]) -> Vec<u32> {
+    // Adding 0 turns -0 into 0.
+    let bits = |v: u32| vertices[v as usize].map(|x| (x + 0.0).to_bits());
+    let mut seen = HashTable::with_capacity(vertices.len());
+    (0..vertices.len() as u32)
+        .map(|v| {
+            let key = bits(v);
+            match seen.entry(hash(key), |&other| bits(other) == key, |&other| hash(bits(other))) {
+                Entry::Occupied(entry) => *entry.get(),
+                Entry::Vacant(entry) => *entry.insert(v).get(),
+            }
+        })
+        .collect()
+}
+
+/// Whether a triangle has exactly no area: its corners lie on a line, which they do if and only if they do
+/// so in all three projections.
+fn is_degenerate(t: [u32; 3], vertices: &[[f64; 3]]) -> bool {
+    let [a, b, c] = t;
+    if a == b || b == c || c == a {
+        return true;
+    }
+    let corners = t.map(|v| vertices[v as usize]);
+    [(0, 1), (1, 2), (2, 0)].into_iter().all(|(u, v)| {
+        let [a, b, c] = corners.map(|p| Coord { x: p[u], y: p[v] });
+        orient2d(a, b, c) == 0.0
+    })
+}
+
+/// Drops triangles that are an earlier one again, whichever corner they begin with. Returns how many.
+fn drop_duplicates(triangles: &mut Vec<[u32; 3]>) -> usize {
+    let key = |t: [u32; 3]| match t {
+        [a, b, c] if a < b && a < c => [a, b, c],
+        [a, b, c] if b < c => [b, c, a],
+        [a, b, c] => [c, a, b],
+    };
+    let before = triangles.len();
+    let mut seen = HashTable::with_capacity(before);
+    let mut kept = Vec::with_capacity(before);
+    for &t in triangles.iter() {
+        let sought = key(t);
+        let spread = |t: [u32; 3]| hash(t.map(u64::from));
+        if let Entry::Vacant(entry) = seen.entry(spread(sought), |other| *other == sought, |t| spread(*t)) {
+            entry.insert(sought);
+            kept.push(t);
+        }
+    }
+    *triangles = kept;
+    before - triangles.len()
+}
+
+/// Drops vertices that no triangle has, and renumbers the others in order. Returns how many.
+fn drop_unreferenced(vertices: &mut Vec<[f64; 3]>, triangles: &mut [[u32; 3]]) -> usize {
+    const UNUSED: u32 = u32::MAX;
+    let mut renumbered = vec![UNUSED; vertices.len()];
+    for &v in triangles.as_flattened() {
+        renumbered[v as usize] = 0;
+    }
+    let before = vertices.len();
+    let mut count = 0;
+    for (v, number) in renumbered.iter_mut().enumerate() {
+        if *number != UNUSED {
+            *number = count;
+            vertices[count as usize] = vertices[v];
+            count += 1;
+        }
+    }
+    vertices.truncate(count as usize);
+    if count as usize != before {
+        triangles.par_iter_mut().for_each(|t| *t = t.map(|v| renumbered[v as usize]));
+    }
+    before - vertices.len()
+}
+
+/// A hash of three words: the halves of each product with an odd constant, folded. Positions of models are
+/// f64 with many zero bits at the end, which the fold spreads over the whole word.
+fn hash(words: [u64; 3]) -> u64 {
+    /// 2^64 divided by the golden ratio: odd, and no pattern in its bits.
+    const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;
+    words.into_iter().fold(FACTOR, |hash, word| {
+        let product = u128::from(hash ^ word) * u128::from(FACTOR);
+        (product as u64) ^ ((product >> 64) as u64).rotate_left(29)
+    })
+}

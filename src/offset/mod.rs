@@ -1,0 +1,93 @@
+//! The recipe: from a mesh and a distance to the offset surface and its narrow band.
+//!
+//! ```text
+//!  mesh -> hierarchy -> signed distance -> filters -> band <-> OpenVDB -> edges -> contour -> mesh
+//! ```
+//!
+//! Promised for a closed, consistently oriented input: the result is closed, 2-manifold, consistently
+//! oriented and free of self-intersections, on the coordinates of the chosen [`Precision`]; the same bytes
+//! for every number of threads.
+
+mod narrow_band;
+mod settings;
+mod statistics;
+#[cfg(test)]
+mod tests;
+mod unsuitable;
+
+pub use crate::contour::Precision;
+pub use settings::{Length, OffsetSettings, SettingsError, SignMode, VoxelSize};
+pub use statistics::{EngineTimes, OffsetStatistics, VdbStatistics};
+pub use unsuitable::{EmptyResult, InputError, MemoryError};
+
+use crate::contour::{ContourSettings, contour};
+use crate::distance::SignedDistance;
+use crate::edge::{EdgeNumbers, solve};
+use crate::error::Error;
+use crate::mesh::{Topology, TriMesh};
+use crate::run::{Phase, RunSettings};
+use crate::vdb::Band;
+use std::time::Instant;
+
+/// What [`offset`] returns.
+#[derive(Debug)]
+pub struct OffsetResult {
+    /// The offset surface: closed, 2-manifold, free of intersections.
+    pub mesh: TriMesh,
+    /// The narrow band: phi and the closest triangles, in OpenVDB grids.
+    pub band: Band,
+    /// What happened on the way.
+    pub statistics: OffsetStatistics,
+}
+
+/// The offset surface of `mesh`: all points at the signed distance `settings.distance` from it, positive
+/// outside.
+///
+/// # Errors
+/// - [`Error::Settings`]: a distance that is not finite, a voxel size that is not positive.
+/// - [`Error::Input`]: the mesh is empty, or not closed or not consistently oriented
+///   ([`SignMode::Pseudonormal`] goes ahead all the same).
+/// - [`Error::Empty`]: shrinking leaves nothing.
+/// - [`Error::Memory`]: the band would not fit.
+/// - [`Error::Contour`], [`Error::TooManyEdges`]: the lattice is too fine for the precision or the indices.
+/// - [`Error::Cancelled`].
+pub fn offset(mesh: &TriMesh, settings: &OffsetSettings, run: &RunSettings) -> Result<OffsetResult, Error> {
+    let mut times = EngineTimes::default();
+    let topology = run.install(|| Topology::new(mesh));
+    unsuitable::check_input(mesh, &topology, settings.sign)?;
+    let band_settings = settings.resolve(mesh)?;
+    let (lattice, r) = (band_settings.lattice, band_settings.r);
+    unsuitable::check_memory(mesh, &band_settings, settings.max_memory)?;
+
+    let started = Instant::now();
+    let distance = {
+        let _phase = run.phase(Phase::Hierarchy, 0);
+        run.install(|| SignedDistance::new(mesh, &topology))
+    };
+    run.check()?;
+    times.hierarchy = started.elapsed().as_secs_f64();
+
+    let started = Instant::now();
+    let (band, filter) = narrow_band::build(&distance, &band_settings, run)?;
+    times.band = started.elapsed().as_secs_f64();
+
+    let started = Instant::now();
+    let (signs, triangles) = narrow_band::read_back(&band)?;
+    let numbers = EdgeNumbers::new(&signs)?;
+    if numbers.is_empty() {
+        return Err(EmptyResult::explain(&distance, &band_settings).into());
+    }
+    let (crossings, edges) = solve(&distance, lattice, r, &signs, numbers, &triangles, run)?;
+    drop(triangles);
+    times.edges = started.elapsed().as_secs_f64();
+
+    let started = Instant::now();
+    let contour_settings = ContourSettings { precision: settings.precision };
+    let (mesh, contour) = contour(&signs, &crossings, lattice, &contour_settings, run)?;
+    times.contour = started.elapsed().as_secs_f64();
+
+    let vdb = VdbStatistics::of(&band);
+    let statistics =
+        OffsetStatistics { distance: r, voxel: lattice.voxel, times, filter, edges, contour, vdb };
+    Ok(OffsetResult { mesh, band, statistics })
+}

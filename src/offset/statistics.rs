@@ -1,0 +1,67 @@
+//! What happened during an offset: the parts of the statistics file that the engine knows.
+
+use crate::contour::ContourStatistics;
+use crate::edge::EdgeStatistics;
+use crate::filter::FilterStatistics;
+use crate::vdb::Band;
+use serde::Serialize;
+
+/// Counts and times of one offset.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct OffsetStatistics {
+    /// The signed distance r in model units.
+    pub distance: f64,
+    /// The voxel size h in model units.
+    pub voxel: f64,
+    /// Seconds per stage.
+    pub times: EngineTimes,
+    /// Distance computations by filter ([LW11] Table IV).
+    pub filter: FilterStatistics,
+    /// Edge intersections by method ([LW11] Table V).
+    pub edges: EdgeStatistics,
+    /// Cells, polygons, vertices.
+    pub contour: ContourStatistics,
+    /// The band's size.
+    pub vdb: VdbStatistics,
+}
+
+/// Seconds per stage of the engine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct EngineTimes {
+    /// Building the hierarchy.
+    pub hierarchy: f64,
+    /// Filters and band.
+    pub band: f64,
+    /// Edge intersections.
+    pub edges: f64,
+    /// Contouring.
+    pub contour: f64,
+}
+
+impl EngineTimes {
+    /// The engine's time, the one that comparisons use.
+    pub fn total(&self) -> f64 {
+        self.hierarchy + self.band + self.edges + self.contour
+    }
+}
+
+/// The size of the band.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct VdbStatistics {
+    /// Active voxels of the grid `surface`.
+    pub active_voxels: u64,
+    /// Its leaves.
+    pub leaves: u64,
+    /// Bytes in memory, both grids.
+    pub memory: u64,
+}
+
+impl VdbStatistics {
+    pub(super) fn of(band: &Band) -> Self {
+        VdbStatistics {
+            active_voxels: band.surface.active_voxels(),
+            leaves: band.surface.leaf_count() as u64,
+            memory: band.surface.memory() + band.closest.as_ref().map_or(0, |grid| grid.memory()),
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! Why an offset cannot be made, told before the work starts where that is possible.
+
+use super::SignMode;
+use crate::band::BandSettings;
+use crate::distance::{SignedDistance, largest_depth};
+use crate::geom::aabb::Aabb;
+use crate::mesh::{Topology, TriMesh, measure};
+use glam::DVec3;
+
+/// The input is not the boundary of a solid.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum InputError {
+    /// There is no triangle.
+    #[error("the mesh has no triangles")]
+    NoTriangles,
+    /// Edges with a single triangle.
+    #[error(
+        "the mesh is not closed: {count} boundary edges, the first from ({:.6}, {:.6}, {:.6}) to ({:.6}, \
+         {:.6}, {:.6}); close its holes, or go ahead all the same with --sign pseudonormal",
+        .first[0][0], .first[0][1], .first[0][2], .first[1][0], .first[1][1], .first[1][2]
+    )]
+    Open {
+        /// The number of boundary edges.
+        count: usize,
+        /// The ends of the first one.
+        first: [[f64; 3]; 2],
+    },
+    /// Edges whose triangles do not agree on the outside.
+    #[error(
+        "the mesh is not consistently oriented: {count} edges whose triangles run the same way, the first \
+         from ({:.6}, {:.6}, {:.6}) to ({:.6}, {:.6}, {:.6}); reorient its triangles, or go ahead all the \
+         same with --sign pseudonormal",
+        .first[0][0], .first[0][1], .first[0][2], .first[1][0], .first[1][1], .first[1][2]
+    )]
+    Misoriented {
+        /// The number of such edges.
+        count: usize,
+        /// The ends of the first one.
+        first: [[f64; 3]; 2],
+    },
+}
+
+pub(super) fn check_input(mesh: &TriMesh, topology: &Topology, sign: SignMode) -> Result<(), InputError> {
+    if mesh.triangles.is_empty() {
+        return Err(InputError::NoTriangles);
+    }
+    if sign == SignMode::Pseudonormal {
+        return Ok(());
+    }
+    let ends = |edge: [u32; 2]| edge.map(|v| mesh.vertices[v as usize]);
+    let defects = topology.defects();
+    if let Some(first) = defects.first_boundary {
+        return Err(InputError::Open { count: defects.boundary_edges, first: ends(first) });
+    }
+    if let Some(first) = defects.first_misoriented {
+        return Err(InputError::Misoriented { count: defects.misoriented_edges, first: ends(first) });
+    }
+    Ok(())
+}
+
+/// The work would not fit into memory.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "voxel size {voxel} needs about {} of memory, and {} are allowed; the smallest voxel size that fits is \
+     about {smallest_voxel:.3e} (or raise --max-memory)",
+    bytes(*.needed), bytes(*.allowed)
+)]
+pub struct MemoryError {
+    /// The voxel size asked for, in model units.
+    pub voxel: f64,
+    /// The estimate, in bytes.
+    pub needed: u64,
+    /// The limit, in bytes.
+    pub allowed: u64,
+    /// The smallest voxel size that would fit, in model units.
+    pub smallest_voxel: f64,
+}
+
+fn bytes(n: u64) -> String {
+    match n {
+        0..10_000_000 => format!("{:.1} MB", n as f64 / 1e6),
+        10_000_000..1_000_000_000 => format!("{:.0} MB", n as f64 / 1e6),
+        _ => format!("{:.1} GB", n as f64 / 1e9),
+    }
+}
+
+/// Bytes per h^2 of offset surface: band in both forms, crossings, cells and mesh. Measured as peak memory
+/// over area / h^2 on several models, and rounded up: too low, and the machine swaps; too high, and work
+/// that fits is refused.
+const BYTES_PER_CELL: f64 = 600.0;
+
+/// The same for each voxel of half-width beyond the first.
+const BYTES_PER_CELL_AND_VOXEL: f64 = 60.0;
+
+/// Bytes per input triangle: hierarchy, topology, pseudonormals.
+const BYTES_PER_TRIANGLE: f64 = 260.0;
+
+pub(super) fn check_memory(
+    mesh: &TriMesh,
+    settings: &BandSettings,
+    max_memory: Option<u64>,
+) -> Result<(), MemoryError> {
+    let Some(allowed) = max_memory.or_else(available_memory) else { return Ok(()) };
+    let area = offset_area(mesh, settings.r);
+    let voxel = settings.lattice.voxel;
+    let per_cell = BYTES_PER_CELL + (settings.half_width - 1.0) * BYTES_PER_CELL_AND_VOXEL;
+    let fixed = mesh.triangles.len() as f64 * BYTES_PER_TRIANGLE;
+    let needed = fixed + area / (voxel * voxel) * per_cell;
+    if needed <= allowed as f64 {
+        return Ok(());
+    }
+    let room = (allowed as f64 - fixed).max(0.1 * allowed as f64);
+    let smallest_voxel = (area * per_cell / room).sqrt();
+    Err(MemoryError { voxel, needed: needed as u64, allowed, smallest_voxel })
+}
+
+/// An estimate of the offset surface's area. A ball with the mesh's area A grows to A + 2 sqrt(4 pi A) r +
+/// 4 pi r^2 (Steiner's formula for a ball); folds fill up long before the surface exceeds a ball around
+/// everything.
+fn offset_area(mesh: &TriMesh, r: f64) -> f64 {
+    use std::f64::consts::PI;
+    let area = measure::area(mesh);
+    let r = r.max(0.0);
+    let radius = 0.5 * Aabb::around(mesh.vertices.iter().map(|&v| DVec3::from(v))).diagonal() + r;
+    let grown = area + 2.0 * (4.0 * PI * area).sqrt() * r + 4.0 * PI * r * r;
+    if r == 0.0 { area } else { grown.min(area.max(4.0 * PI * radius * radius)) }
+}
+
+/// Memory that the system can give without swapping, in bytes, where it says so.
+fn available_memory() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find(|line| line.starts_with("MemAvailable:"))?;
+    line.split_whitespace().nth(1)?.parse::<u64>().ok().map(|kib| kib * 1024)
+}
+
+/// No grid edge crosses the offset surface.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum EmptyResult {
+    /// The model is nowhere as deep as the shrink.
+    #[error(
+        "nothing is left at distance {distance}: the model is at most {depth:.6} deep, so any distance \
+         below -{depth:.6} leaves nothing"
+    )]
+    TooDeep {
+        /// The offset distance, negative.
+        distance: f64,
+        /// The radius of the largest ball inside the model.
+        depth: f64,
+    },
+    /// Something is left, but no node of the lattice is in it.
+    #[error(
+        "the offset solid at distance {distance} is too thin for voxel size {voxel}: no lattice node lies \
+         inside it (the model is {depth:.6} deep at most); choose a smaller voxel size"
+    )]
+    TooThin {
+        /// The offset distance.
+        distance: f64,
+        /// The voxel size.
+        voxel: f64,
+        /// The radius of the largest ball inside the model.
+        depth: f64,
+    },
+}
+
+impl EmptyResult {
+    pub(super) fn explain(distance: &SignedDistance, settings: &BandSettings) -> Self {
+        let (r, voxel) = (settings.r, settings.lattice.voxel);
+        let depth = largest_depth(distance, 1e-3);
+        if r + depth * 1.001 < 0.0 {
+            EmptyResult::TooDeep { distance: r, depth }
+        } else {
+            EmptyResult::TooThin { distance: r, voxel, depth }
+        }
+    }
+}
