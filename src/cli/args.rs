@@ -55,17 +55,17 @@ pub(super) struct Arguments {
 #[derive(Args, Debug)]
 pub(super) struct Common {
     /// Number of worker threads [default: all cores]
-    #[arg(long, global = true, value_name = "N")]
+    #[arg(long, global = true, help_heading = "Everywhere", value_name = "N")]
     pub threads: Option<NonZeroUsize>,
     /// Print nothing but errors
-    #[arg(long, short, global = true, conflicts_with = "verbose")]
+    #[arg(long, short, global = true, help_heading = "Everywhere", conflicts_with = "verbose")]
     pub quiet: bool,
     /// Print phases and counts as well
-    #[arg(long, short, global = true)]
+    #[arg(long, short, global = true, help_heading = "Everywhere")]
     pub verbose: bool,
     /// Refuse to start what would need more memory, in bytes or with K, M or G (powers of 1024)
     /// [default: what the system has available]
-    #[arg(long, global = true, value_name = "BYTES", value_parser = bytes)]
+    #[arg(long, global = true, help_heading = "Everywhere", value_name = "BYTES", value_parser = bytes)]
     pub max_memory: Option<u64>,
 }
 
