@@ -3,13 +3,12 @@
 
 use std::fmt;
 
-use hashbrown::HashTable;
-use hashbrown::hash_table::Entry;
 use rayon::prelude::*;
 use robust::{Coord, orient2d};
 use serde::Serialize;
 
 use super::TriMesh;
+use super::equal::{first_equal, hash};
 
 /// What [`clean`] did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -95,17 +94,7 @@ pub fn clean(mesh: TriMesh) -> (TriMesh, CleanReport) {
 /// For each vertex the first one at the same position.
 fn first_at_position(vertices: &[[f64; 3]]) -> Vec<u32> {
     // Adding 0 turns -0 into 0.
-    let bits = |v: u32| vertices[v as usize].map(|x| (x + 0.0).to_bits());
-    let mut seen = HashTable::with_capacity(vertices.len());
-    (0..vertices.len() as u32)
-        .map(|v| {
-            let key = bits(v);
-            match seen.entry(hash(key), |&other| bits(other) == key, |&other| hash(bits(other))) {
-                Entry::Occupied(entry) => *entry.get(),
-                Entry::Vacant(entry) => *entry.insert(v).get(),
-            }
-        })
-        .collect()
+    first_equal(vertices, |v| v.map(|x| (x + 0.0).to_bits()), |&key| hash(key))
 }
 
 /// Whether a triangle has exactly no area: its corners lie on a line, which they do if and only if they do
@@ -129,18 +118,10 @@ fn drop_duplicates(triangles: &mut Vec<[u32; 3]>) -> usize {
         [a, b, c] if b < c => [b, c, a],
         [a, b, c] => [c, a, b],
     };
+    let first = first_equal(triangles, key, |&key| hash(key.map(u64::from)));
     let before = triangles.len();
-    let mut seen = HashTable::with_capacity(before);
-    let mut kept = Vec::with_capacity(before);
-    for &t in triangles.iter() {
-        let sought = key(t);
-        let spread = |t: [u32; 3]| hash(t.map(u64::from));
-        if let Entry::Vacant(entry) = seen.entry(spread(sought), |other| *other == sought, |t| spread(*t)) {
-            entry.insert(sought);
-            kept.push(t);
-        }
-    }
-    *triangles = kept;
+    let mut numbers = first.iter().zip(0..);
+    triangles.retain(|_| numbers.next().is_some_and(|(&first, t)| first == t));
     before - triangles.len()
 }
 
@@ -165,17 +146,6 @@ fn drop_unreferenced(vertices: &mut Vec<[f64; 3]>, triangles: &mut [[u32; 3]]) -
         triangles.par_iter_mut().for_each(|t| *t = t.map(|v| renumbered[v as usize]));
     }
     before - vertices.len()
-}
-
-/// A hash of three words: the halves of each product with an odd constant, folded. Positions of models are
-/// f64 with many zero bits at the end, which the fold spreads over the whole word.
-fn hash(words: [u64; 3]) -> u64 {
-    /// 2^64 divided by the golden ratio: odd, and no pattern in its bits.
-    const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;
-    words.into_iter().fold(FACTOR, |hash, word| {
-        let product = u128::from(hash ^ word) * u128::from(FACTOR);
-        (product as u64) ^ ((product >> 64) as u64).rotate_left(29)
-    })
 }
 
 #[cfg(test)]
@@ -265,6 +235,39 @@ mod tests {
         TriMesh {
             vertices: used.iter().map(|&v| position(v)).collect(),
             triangles: kept.iter().map(|t| t.map(number)).collect(),
+        }
+    }
+
+    /// Enough of it for several chunks and shards: a sheet of squares, each triangle with vertices of its
+    /// own, and some triangles twice.
+    #[test]
+    fn a_large_soup_becomes_a_sheet_on_any_number_of_threads() {
+        const SIDE: usize = 200;
+        let corner = |i: usize, j: usize| [i as f64 / 3.0, 0.0, j as f64 * -0.7];
+        let mut vertices = Vec::new();
+        for (i, j) in (0..SIDE).flat_map(|i| (0..SIDE).map(move |j| (i, j))) {
+            let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+            vertices.extend([a, b, c, a, c, d]);
+            if j % 10 == 0 {
+                vertices.extend([b, c, a]);
+            }
+        }
+        let triangles: Vec<[u32; 3]> =
+            (0..vertices.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let soup = mesh(&vertices, &triangles);
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| clean(soup.clone()))
+        };
+        let (sheet, report) = on(1);
+        assert_eq!(sheet.vertices.len(), (SIDE + 1) * (SIDE + 1));
+        assert_eq!(sheet.triangles.len(), 2 * SIDE * SIDE);
+        assert_eq!(report.welded_vertices, vertices.len() - sheet.vertices.len());
+        assert_eq!(report.duplicate_triangles, SIDE * SIDE / 10);
+        assert_eq!((report.degenerate_triangles, report.unreferenced_vertices), (0, 0));
+        assert_eq!(sheet.triangles[..2], [[0, 1, 2], [0, 2, 3]]);
+        for threads in [2, 8] {
+            assert_eq!(on(threads), (sheet.clone(), report));
         }
     }
 
