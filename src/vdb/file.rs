@@ -71,13 +71,15 @@ pub struct VdbOptions {
 /// to a temporary name and rename.
 ///
 /// # Errors
-/// If the file cannot be written whole, or the voxel size is beyond what half floats can hold.
+/// If the file cannot be written whole, or the voxel size is below 1.5e-5 model units or beyond what half
+/// floats can hold.
 pub fn write(
     path: &Path,
     surface: &SurfaceGrid,
     closest: Option<&ClosestGrid>,
     options: &VdbOptions,
 ) -> Result<(), VdbError> {
+    surface.check_transform()?;
     let half = match options.precision {
         VdbPrecision::Full => None,
         VdbPrecision::Half => Some(surface.grid.half_copy(half_background(surface)?)?),
