@@ -7,6 +7,7 @@
 use super::VdbError;
 use super::bridge::ffi;
 use super::grid::{Band, CREATOR, ClosestGrid, SurfaceGrid};
+use super::stamp;
 use cxx::UniquePtr;
 use std::fs::File;
 use std::io::Read;
@@ -93,7 +94,8 @@ pub fn write(
         Compression::None => ffi::Codec::None,
     };
     ffi::write_file(bytes(path), grid, closest, codec, &metadata(surface, options))
-        .map_err(|e| VdbError::write(path, e))
+        .map_err(|e| VdbError::write(path, e))?;
+    stamp::stamp(path).map_err(|e| VdbError::write(path, e))
 }
 
 /// Opens the level set `name` of a file; without a name the grid `surface`, or else the only float grid.
@@ -177,6 +179,9 @@ pub(super) fn contents(path: &Path, depth: ffi::Depth) -> Result<ffi::Contents, 
         .map_err(|e| VdbError::read(path, e))?;
     if first != MAGIC {
         return Err(VdbError::NotVdb { path: path.into() });
+    }
+    if !stamp::is_intact(path).map_err(|e| VdbError::read(path, e))? {
+        return Err(VdbError::read(path, "the file is damaged or incomplete"));
     }
     ffi::read_contents(bytes(path), depth).map_err(|e| VdbError::read(path, e))
 }

@@ -10,6 +10,9 @@ use std::path::Path;
 
 const SPHERE: Sphere = Sphere { radius: 2.0, voxel: 0.1, half_width: 3.0 };
 
+/// Where a file's identifier says of what kind it is.
+const UUID_VERSION: usize = 21 + 14;
+
 fn options() -> VdbOptions {
     VdbOptions {
         distance: Some(-0.25),
@@ -145,19 +148,53 @@ fn what_is_no_vdb_file_is_refused() {
 }
 
 #[test]
+fn the_same_band_is_the_same_file() {
+    let dir = tempfile::tempdir().unwrap();
+    let written = |name: &str, radius: f64| {
+        let (path, band) = (dir.path().join(name), Sphere { radius, ..SPHERE }.band());
+        write(&path, &band.surface, band.closest.as_ref(), &options()).unwrap();
+        std::fs::read(&path).unwrap()
+    };
+    assert_eq!(written("a.vdb", 2.0), written("b.vdb", 2.0));
+    assert_ne!(written("a.vdb", 2.0), written("b.vdb", 1.9));
+}
+
+#[test]
 fn a_truncated_file_is_an_error_wherever_it_ends() {
     let dir = tempfile::tempdir().unwrap();
     let (path, cut) = (dir.path().join("sphere.vdb"), dir.path().join("cut.vdb"));
     write_sphere(&path, &options());
+    let own = std::fs::read(&path).unwrap();
+    // With a random identifier, as other programs write it, there is no hash that tells.
+    let mut foreign = own.clone();
+    foreign[UUID_VERSION] = b'4';
+    std::fs::write(&path, &foreign).unwrap();
+    assert!(open_surface(&path, None).is_ok());
+    for whole in [own, foreign] {
+        // All ends in the header, and some hundred in the trees.
+        let ends = (8..1500).chain((1500..whole.len()).step_by(whole.len() / 300)).chain([whole.len() - 1]);
+        for end in ends {
+            std::fs::write(&cut, &whole[..end]).unwrap();
+            let error = open_surface(&cut, None).unwrap_err();
+            assert!(matches!(error, VdbError::Read { .. }), "{end}: {error}");
+            assert!(!error.to_string().contains('\n'), "{end}: {error}");
+            assert!(info(&cut).is_err());
+        }
+    }
+}
+
+#[test]
+fn a_damaged_file_is_an_error() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("sphere.vdb");
+    write_sphere(&path, &options());
     let whole = std::fs::read(&path).unwrap();
-    // All ends in the header, and some hundred in the trees.
-    let ends = (8..1500).chain((1500..whole.len()).step_by(whole.len() / 300)).chain([whole.len() - 1]);
-    for end in ends {
-        std::fs::write(&cut, &whole[..end]).unwrap();
-        let error = open_surface(&cut, None).unwrap_err();
-        assert!(matches!(error, VdbError::Read { .. }), "{end}: {error}");
-        assert!(!error.to_string().contains('\n'), "{end}: {error}");
-        assert!(info(&cut).is_err());
+    for place in (8..whole.len()).step_by(997).filter(|&n| n != UUID_VERSION) {
+        let mut damaged = whole.clone();
+        damaged[place] ^= 0x10;
+        std::fs::write(&path, damaged).unwrap();
+        let error = open_surface(&path, None).unwrap_err().to_string();
+        assert!(error.ends_with("the file is damaged or incomplete"), "{place}: {error}");
     }
 }
 
