@@ -133,7 +133,7 @@ pub fn open_closest(path: &Path, name: Option<&str>) -> Result<ClosestGrid, VdbE
     Ok(ClosestGrid { grid })
 }
 
-/// Opens a band that [`write`] wrote, or another program's level set: see [`open_surface`]. The closest
+/// Opens a band that [`write()`] wrote, or another program's level set: see [`open_surface`]. The closest
 /// triangles are there if the file has them for exactly the leaves of the surface.
 ///
 /// # Errors

@@ -12,7 +12,7 @@
 //! phi is in model units, negative inside, and never 0. [`SurfaceGrid::check_level_set`] runs OpenVDB's
 //! own nine tests. A [`ClosestGrid`] of the same leaves holds the ids of the closest triangles.
 //!
-//! Leaves go in and out in batches, as flat slices; [`write`](write()) and [`open_surface`] are the files. The
+//! Leaves go in and out in batches, as flat slices; [`write()`] and [`open_surface`] are the files. The
 //! same grids and options give the same bytes.
 //!
 //! Truncated files are recognised whoever wrote them. Damaged ones are if they were written here: their
