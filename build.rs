@@ -4,7 +4,6 @@
 //! `OPENVDB_ROOT` if that is set and under the usual prefixes otherwise.
 
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 /// The versions that the bridge is written for. Before 10 the version header and the leaf buffers
 /// differ; after 13 nobody has tried.
@@ -26,21 +25,14 @@ struct OpenVdb {
     major: u32,
 }
 
-fn main() -> ExitCode {
+fn main() {
     println!("cargo:rerun-if-env-changed=OPENVDB_ROOT");
     for file in ["build.rs", "src/vdb/bridge.rs", "cpp"] {
         println!("cargo:rerun-if-changed={file}");
     }
     match find() {
-        Ok(openvdb) => {
-            compile(&openvdb);
-            ExitCode::SUCCESS
-        }
-        Err(sentence) => {
-            println!("cargo:warning={sentence}");
-            eprintln!("{sentence}");
-            ExitCode::FAILURE
-        }
+        Ok(openvdb) => compile(&openvdb),
+        Err(sentence) => println!("cargo::error={sentence}"),
     }
 }
 

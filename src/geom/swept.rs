@@ -117,9 +117,9 @@ fn principal_axes(spheres: &[Sphere]) -> (DVec3, DVec3) {
     let mean = spheres.iter().map(|s| s.0).sum::<DVec3>() / spheres.len() as f64;
     let mut covariance = Sym3::default();
     for &(p, _) in spheres {
-        covariance.add_outer(p - mean, 1.0);
+        covariance.add_outer((p - mean).to_array());
     }
-    let (_, [u, v, _]) = covariance.eigen();
+    let [u, v, _] = covariance.eigen().vectors.map(DVec3::from);
     (u, v)
 }
 

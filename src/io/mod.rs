@@ -9,14 +9,17 @@
 //!
 //! [`load`] returns the mesh *as it stands in the file*: vertices and triangles in the file's order,
 //! nothing welded, nothing dropped; [`clean`](crate::mesh::clean) is the next step. Polygons are
-//! triangulated, see [`polygon`]. Files are streamed: beside the mesh there is a fixed buffer, except for
-//! OBJ, where the parser holds about 100 bytes for each vertex and face until the end of the file.
+//! triangulated: quads along the shorter diagonal that leaves two triangles of like orientation, larger ones
+//! by cutting ears, so that concave faces do not fold. Files are streamed: beside the mesh there is a fixed
+//! buffer, except for OBJ, where the parser holds about 100 bytes for each vertex and face until the end of
+//! the file.
 //!
 //! # Promises
 //! - No file makes [`load`] panic, and no header makes it allocate more than the file's size justifies:
 //!   the result is a mesh with finite coordinates, vertex numbers in range and at least one triangle, or
 //!   a [`LoadError`] that names file, place, cause and remedy (fuzzed in `tests.rs`).
-//! - [`save`] replaces an existing file whole and only when the new one is complete, see [`atomic`].
+//! - [`save`] replaces an existing file whole and only when the new one is complete: the content goes to a
+//!   temporary file beside it, which is renamed. A failure leaves the old file and no other.
 //! - A mesh that was saved loads again with the same triangles and the same coordinates, rounded to f32
 //!   where the format has f32 (STL; PLY by default).
 

@@ -238,6 +238,12 @@ mod tests {
             check(&turned(&straight));
             check(&turned(&triangle));
         }
+        // Every second corner is blunt, in the largest polygon that is cut by ears.
+        let star = |i: usize| {
+            let (angle, radius) = (i as f64 * 0.0015339, if i.is_multiple_of(2) { 1.0 } else { 0.7 });
+            [radius * angle.cos(), radius * angle.sin()]
+        };
+        check(&(0..MOST_CORNERS_FOR_EARS).map(star).collect::<Vec<_>>());
         let circle: Vec<_> = (0..50).map(|i| f64::from(i) * 0.125).map(|t| [t.cos(), t.sin()]).collect();
         check(&circle);
     }

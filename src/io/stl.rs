@@ -34,7 +34,8 @@ pub(super) fn read<R: Read + Seek>(source: R, length: u64) -> Result<TriMesh, Fa
             read_binary(reader, count)
         }
         _ if text => read_ascii(reader),
-        (Some(count), Some(promised)) => Err(Fault {
+        // Without a zero byte it is some other text, and what stands at byte 80 is no count.
+        (Some(count), Some(promised)) if probe.contains(&0) => Err(Fault {
             place: Place::Byte(length),
             problem: Problem::truncated(format!(
                 "its last triangle ({count} triangles take {promised} bytes, the file has {length})"

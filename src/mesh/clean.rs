@@ -3,13 +3,12 @@
 
 use std::fmt;
 
-use hashbrown::HashTable;
-use hashbrown::hash_table::Entry;
 use rayon::prelude::*;
 use robust::{Coord, orient2d};
 use serde::Serialize;
 
 use super::TriMesh;
+use super::equal::{first_equal, hash};
 
 /// What [`clean`] did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -95,17 +94,7 @@ pub fn clean(mesh: TriMesh) -> (TriMesh, CleanReport) {
 /// For each vertex the first one at the same position.
 fn first_at_position(vertices: &[[f64; 3]]) -> Vec<u32> {
     // Adding 0 turns -0 into 0.
-    let bits = |v: u32| vertices[v as usize].map(|x| (x + 0.0).to_bits());
-    let mut seen = HashTable::with_capacity(vertices.len());
-    (0..vertices.len() as u32)
-        .map(|v| {
-            let key = bits(v);
-            match seen.entry(hash(key), |&other| bits(other) == key, |&other| hash(bits(other))) {
-                Entry::Occupied(entry) => *entry.get(),
-                Entry::Vacant(entry) => *entry.insert(v).get(),
-            }
-        })
-        .collect()
+    first_equal(vertices, |v| v.map(|x| (x + 0.0).to_bits()), |&key| hash(key))
 }
 
 /// Whether a triangle has exactly no area: its corners lie on a line, which they do if and only if they do
@@ -129,18 +118,10 @@ fn drop_duplicates(triangles: &mut Vec<[u32; 3]>) -> usize {
         [a, b, c] if b < c => [b, c, a],
         [a, b, c] => [c, a, b],
     };
+    let first = first_equal(triangles, key, |&key| hash(key.map(u64::from)));
     let before = triangles.len();
-    let mut seen = HashTable::with_capacity(before);
-    let mut kept = Vec::with_capacity(before);
-    for &t in triangles.iter() {
-        let sought = key(t);
-        let spread = |t: [u32; 3]| hash(t.map(u64::from));
-        if let Entry::Vacant(entry) = seen.entry(spread(sought), |other| *other == sought, |t| spread(*t)) {
-            entry.insert(sought);
-            kept.push(t);
-        }
-    }
-    *triangles = kept;
+    let mut numbers = first.iter().zip(0..);
+    triangles.retain(|_| numbers.next().is_some_and(|(&first, t)| first == t));
     before - triangles.len()
 }
 
@@ -167,13 +148,149 @@ fn drop_unreferenced(vertices: &mut Vec<[f64; 3]>, triangles: &mut [[u32; 3]]) -
     before - vertices.len()
 }
 
-/// A hash of three words: the halves of each product with an odd constant, folded. Positions of models are
-/// f64 with many zero bits at the end, which the fold spreads over the whole word.
-fn hash(words: [u64; 3]) -> u64 {
-    /// 2^64 divided by the golden ratio: odd, and no pattern in its bits.
-    const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;
-    words.into_iter().fold(FACTOR, |hash, word| {
-        let product = u128::from(hash ^ word) * u128::from(FACTOR);
-        (product as u64) ^ ((product >> 64) as u64).rotate_left(29)
-    })
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn mesh(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> TriMesh {
+        TriMesh { vertices: vertices.to_vec(), triangles: triangles.to_vec() }
+    }
+
+    #[test]
+    fn everything_at_once_in_order() {
+        let vertices = [
+            [5.0, 5.0, 5.0],
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [-0.0, 0.0, -0.0],
+            [2.0, 0.0, 0.0],
+            [0.0, 0.0, 1.0],
+        ];
+        // The second has two corners at one place, the third lies on a line, the fourth and the sixth are
+        // the first again, the fifth is its other side.
+        let triangles = [[1, 2, 3], [1, 4, 3], [4, 2, 5], [2, 3, 4], [3, 2, 1], [3, 1, 2], [4, 3, 6]];
+        let (cleaned, report) = clean(mesh(&vertices, &triangles));
+        assert_eq!(cleaned.vertices, [vertices[1], vertices[2], vertices[3], vertices[6]]);
+        assert_eq!(cleaned.triangles, [[0, 1, 2], [2, 1, 0], [0, 2, 3]]);
+        let expected = CleanReport {
+            welded_vertices: 1,
+            degenerate_triangles: 2,
+            duplicate_triangles: 2,
+            unreferenced_vertices: 2,
+        };
+        assert_eq!(report, expected);
+        assert_eq!(
+            report.to_string(),
+            "welded 1 vertex, dropped 2 degenerate triangles, 2 duplicate triangles, 2 unreferenced vertices"
+        );
+        let json = serde_json::to_string(&report).unwrap();
+        assert!(json.starts_with(r#"{"welded_vertices":1,"degenerate_triangles":2,"#), "{json}");
+    }
+
+    #[test]
+    fn a_clean_mesh_stays_as_it_is() {
+        let clean_mesh = mesh(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]]);
+        let (cleaned, report) = clean(clean_mesh.clone());
+        assert_eq!(cleaned, clean_mesh);
+        assert!(report.is_clean());
+        assert_eq!(report.to_string(), "nothing to clean");
+        assert_eq!(clean(TriMesh::default()), (TriMesh::default(), CleanReport::default()));
+    }
+
+    #[test]
+    fn area_is_decided_exactly() {
+        // The third corner lies on the line, which rounding would deny; or beside it by one bit of its last
+        // coordinate, which rounding would not see.
+        let on: [[f64; 3]; 3] = [[0.1, 0.1, 0.1], [0.3, 0.3, 0.3], [0.7, 0.7, 0.7]];
+        let mut beside = on;
+        beside[2][2] = beside[2][2].next_up();
+        assert_eq!(clean(mesh(&on, &[[0, 1, 2]])).1.degenerate_triangles, 1);
+        assert_eq!(clean(mesh(&beside, &[[0, 1, 2]])).1.degenerate_triangles, 0);
+        // An upright triangle has no area in one projection only.
+        let upright = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+        assert!(clean(mesh(&upright, &[[0, 1, 2]])).1.is_clean());
+    }
+
+    /// What [`clean`] says it does, word by word.
+    fn slow_clean(mesh: &TriMesh) -> TriMesh {
+        let position = |v: u32| mesh.vertices[v as usize];
+        let first = |v: u32| (0..).find(|&u| position(u) == position(v)).unwrap();
+        let mut kept: Vec<[u32; 3]> = Vec::new();
+        for t in &mesh.triangles {
+            let t = t.map(first);
+            let [p, q] = [t[1], t[2]]
+                .map(|v| -> [f64; 3] { std::array::from_fn(|a| position(v)[a] - position(t[0])[a]) });
+            let parallel = (0..3).all(|a| p[a] * q[(a + 1) % 3] == p[(a + 1) % 3] * q[a]);
+            let known = (0..3).any(|k| kept.contains(&[t[k], t[(k + 1) % 3], t[(k + 2) % 3]]));
+            if !parallel && !known {
+                kept.push(t);
+            }
+        }
+        let used: Vec<u32> =
+            (0..mesh.vertices.len() as u32).filter(|v| kept.as_flattened().contains(v)).collect();
+        let number = |v: u32| used.iter().position(|&u| u == v).unwrap() as u32;
+        TriMesh {
+            vertices: used.iter().map(|&v| position(v)).collect(),
+            triangles: kept.iter().map(|t| t.map(number)).collect(),
+        }
+    }
+
+    /// Enough of it for several chunks and shards: a sheet of squares, each triangle with vertices of its
+    /// own, and some triangles twice.
+    #[test]
+    fn a_large_soup_becomes_a_sheet_on_any_number_of_threads() {
+        const SIDE: usize = 200;
+        let corner = |i: usize, j: usize| [i as f64 / 3.0, 0.0, j as f64 * -0.7];
+        let mut vertices = Vec::new();
+        for (i, j) in (0..SIDE).flat_map(|i| (0..SIDE).map(move |j| (i, j))) {
+            let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+            vertices.extend([a, b, c, a, c, d]);
+            if j % 10 == 0 {
+                vertices.extend([b, c, a]);
+            }
+        }
+        let triangles: Vec<[u32; 3]> =
+            (0..vertices.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let soup = mesh(&vertices, &triangles);
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| clean(soup.clone()))
+        };
+        let (sheet, report) = on(1);
+        assert_eq!(sheet.vertices.len(), (SIDE + 1) * (SIDE + 1));
+        assert_eq!(sheet.triangles.len(), 2 * SIDE * SIDE);
+        assert_eq!(report.welded_vertices, vertices.len() - sheet.vertices.len());
+        assert_eq!(report.duplicate_triangles, SIDE * SIDE / 10);
+        assert_eq!((report.degenerate_triangles, report.unreferenced_vertices), (0, 0));
+        assert_eq!(sheet.triangles[..2], [[0, 1, 2], [0, 2, 3]]);
+        for threads in [2, 8] {
+            assert_eq!(on(threads), (sheet.clone(), report));
+        }
+    }
+
+    proptest! {
+        /// On a coarse lattice, where everything that is to be cleaned is frequent and products are exact.
+        #[test]
+        fn agrees_with_the_definition(
+            vertices in prop::collection::vec(prop::array::uniform3(-1i8..2), 12),
+            triangles in prop::collection::vec(prop::array::uniform3(0u32..12), 0..40),
+        ) {
+            let vertices: Vec<_> = vertices.into_iter().map(|v| v.map(f64::from)).collect();
+            let raw = mesh(&vertices, &triangles);
+            let (cleaned, report) = clean(raw.clone());
+            prop_assert_eq!(&cleaned, &slow_clean(&raw));
+            prop_assert_eq!(
+                raw.triangles.len() - cleaned.triangles.len(),
+                report.degenerate_triangles + report.duplicate_triangles
+            );
+            prop_assert_eq!(
+                raw.vertices.len() - cleaned.vertices.len(),
+                report.welded_vertices + report.unreferenced_vertices
+            );
+            prop_assert!(clean(cleaned).1.is_clean());
+        }
+    }
 }

@@ -4,6 +4,7 @@ mod clean;
 pub mod measure;
 pub mod shapes;
 mod topology;
+mod equal;
 mod tri_mesh;
 
 pub use clean::{CleanReport, clean};

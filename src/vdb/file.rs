@@ -7,6 +7,7 @@
 use super::VdbError;
 use super::bridge::ffi;
 use super::grid::{Band, CREATOR, ClosestGrid, SurfaceGrid};
+use super::stamp;
 use cxx::UniquePtr;
 use std::fs::File;
 use std::io::Read;
@@ -71,13 +72,15 @@ pub struct VdbOptions {
 /// to a temporary name and rename.
 ///
 /// # Errors
-/// If the file cannot be written whole, or the voxel size is beyond what half floats can hold.
+/// If the file cannot be written whole, or the voxel size is below 1.5e-5 model units or beyond what half
+/// floats can hold.
 pub fn write(
     path: &Path,
     surface: &SurfaceGrid,
     closest: Option<&ClosestGrid>,
     options: &VdbOptions,
 ) -> Result<(), VdbError> {
+    surface.check_transform()?;
     let half = match options.precision {
         VdbPrecision::Full => None,
         VdbPrecision::Half => Some(surface.grid.half_copy(half_background(surface)?)?),
@@ -91,7 +94,8 @@ pub fn write(
         Compression::None => ffi::Codec::None,
     };
     ffi::write_file(bytes(path), grid, closest, codec, &metadata(surface, options))
-        .map_err(|e| VdbError::write(path, e))
+        .map_err(|e| VdbError::write(path, e))?;
+    stamp::stamp(path).map_err(|e| VdbError::write(path, e))
 }
 
 /// Opens the level set `name` of a file; without a name the grid `surface`, or else the only float grid.
@@ -129,7 +133,7 @@ pub fn open_closest(path: &Path, name: Option<&str>) -> Result<ClosestGrid, VdbE
     Ok(ClosestGrid { grid })
 }
 
-/// Opens a band that [`write`] wrote, or another program's level set: see [`open_surface`]. The closest
+/// Opens a band that [`write()`] wrote, or another program's level set: see [`open_surface`]. The closest
 /// triangles are there if the file has them for exactly the leaves of the surface.
 ///
 /// # Errors
@@ -175,6 +179,9 @@ pub(super) fn contents(path: &Path, depth: ffi::Depth) -> Result<ffi::Contents, 
         .map_err(|e| VdbError::read(path, e))?;
     if first != MAGIC {
         return Err(VdbError::NotVdb { path: path.into() });
+    }
+    if !stamp::is_intact(path).map_err(|e| VdbError::read(path, e))? {
+        return Err(VdbError::read(path, "the file is damaged or incomplete"));
     }
     ffi::read_contents(bytes(path), depth).map_err(|e| VdbError::read(path, e))
 }

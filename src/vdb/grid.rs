@@ -10,6 +10,9 @@ use cxx::UniquePtr;
 /// Who made a grid, as other programs show it.
 pub(super) const CREATOR: &str = concat!("exocarp ", env!("CARGO_PKG_VERSION"));
 
+/// OpenVDB refuses scales whose cube is below 3e-15.
+const SMALLEST_VOXEL: f64 = 1.5e-5;
+
 /// phi around the offset surface, as a level set (see [`vdb`](super)).
 pub struct SurfaceGrid {
     pub(super) grid: UniquePtr<ffi::FloatGrid>,
@@ -39,6 +42,9 @@ impl SurfaceGrid {
     ///
     /// `half_width` is in voxels; other programs expect 3 or more, contouring needs 1.
     ///
+    /// OpenVDB has no transforms for voxels below 1.5e-5 model units. Such a grid can be used in memory,
+    /// and neither checked nor written.
+    ///
     /// # Errors
     /// If the voxel size is not positive, the half width less than 1, or their product no normal f32.
     pub fn new(lattice: Lattice, half_width: f64) -> Result<Self, VdbError> {
@@ -55,7 +61,7 @@ impl SurfaceGrid {
         if !background.is_normal() {
             return wrong("the background value is beyond the range of 32-bit floats");
         }
-        let grid = ffi::new_float_grid(voxel, background, CREATOR)?;
+        let grid = ffi::new_float_grid(transform_scale(voxel), background, CREATOR)?;
         Ok(SurfaceGrid { grid, lattice, translation: [0.0; 3], background, half_width })
     }
 
@@ -190,9 +196,10 @@ impl SurfaceGrid {
     /// truly has no gradient.
     ///
     /// # Errors
-    /// When the run is cancelled, between two tests.
+    /// When the run is cancelled, between two tests, and if the voxel size is below 1.5e-5.
     pub fn check_level_set(&self, run: &RunSettings) -> Result<Vec<String>, VdbError> {
         const TESTS: u8 = 9;
+        self.check_transform()?;
         let threads = i32::try_from(run.threads()).unwrap_or(1);
         let mut messages = Vec::new();
         for test in 1..=TESTS {
@@ -203,6 +210,15 @@ impl SurfaceGrid {
             }
         }
         Ok(messages)
+    }
+
+    /// Fails if OpenVDB's transform is not that of the lattice.
+    pub(super) fn check_transform(&self) -> Result<(), VdbError> {
+        if self.lattice.voxel >= SMALLEST_VOXEL {
+            return Ok(());
+        }
+        let reason = "OpenVDB needs a voxel size of at least 1.5e-5; scale the model up";
+        Err(VdbError::Size { voxel: self.lattice.voxel, half_width: self.half_width, reason })
     }
 }
 
@@ -217,7 +233,7 @@ impl ClosestGrid {
             let reason = "the voxel size must be positive";
             return Err(VdbError::Size { voxel, half_width: 1.0, reason });
         }
-        Ok(ClosestGrid { grid: ffi::new_int32_grid(voxel, CREATOR)? })
+        Ok(ClosestGrid { grid: ffi::new_int32_grid(transform_scale(voxel), CREATOR)? })
     }
 
     /// Adds leaves: 512 triangle ids each, and the mask of active nodes. A leaf that exists at an origin is
@@ -287,6 +303,11 @@ impl std::fmt::Debug for Band {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Band").field("surface", &self.surface).field("closest", &self.closest).finish()
     }
+}
+
+/// The scale of the grid's transform: 1 for voxels that OpenVDB cannot place.
+fn transform_scale(voxel: f64) -> f64 {
+    if voxel < SMALLEST_VOXEL { 1.0 } else { voxel }
 }
 
 /// half_width * voxel as the smallest f32 that is not below it, also after division by the voxel size,

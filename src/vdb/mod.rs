@@ -12,9 +12,12 @@
 //! phi is in model units, negative inside, and never 0. [`SurfaceGrid::check_level_set`] runs OpenVDB's
 //! own nine tests. A [`ClosestGrid`] of the same leaves holds the ids of the closest triangles.
 //!
-//! Leaves go in and out in batches, as flat slices; [`write`](write()) and [`open_surface`] are the files. Not
-//! promised: that a damaged file (as opposed to a truncated one) is recognised, since the format
-//! has no check sums.
+//! Leaves go in and out in batches, as flat slices; [`write()`] and [`open_surface`] are the files. The
+//! same grids and options give the same bytes.
+//!
+//! Truncated files are recognised whoever wrote them. Damaged ones are if they were written here: their
+//! identifier is a hash of the content. Not promised is what happens with another program's damaged file:
+//! the format has no check sums, and OpenVDB trusts what it reads.
 
 mod bridge;
 mod error;
@@ -22,6 +25,7 @@ mod file;
 mod grid;
 mod info;
 mod leaves;
+mod stamp;
 
 pub use error::VdbError;
 pub use file::{

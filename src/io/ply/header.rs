@@ -1,7 +1,8 @@
 //! The header of a PLY file.
 //!
-//! `ply-rs-bw` parses it. Comments are taken out before: they may be in any encoding. What it does not
-//! mind is checked here: elements and properties of the same name, which it would merge.
+//! `ply-rs-bw` parses it. Comments are taken out before: they may be in any encoding. Properties of
+//! no interest get names of their own before, as it refuses names like "distance[<0.1]" and would merge
+//! two of the same name. Elements and properties that matter must have different names.
 
 use std::collections::HashSet;
 use std::io::{BufRead, Read};
@@ -13,6 +14,9 @@ use super::super::Format;
 use super::super::error::{Fault, Problem, quote};
 use super::binary::Skipped;
 use super::{CORNER_LISTS, Role};
+
+/// The names of the coordinates of a vertex.
+const COORDINATES: [&str; 3] = ["x", "y", "z"];
 
 /// The longest header that is read, comments included. Real ones are a few hundred bytes; a file that has
 /// no end of the header is not read to its end to find out.
@@ -74,9 +78,9 @@ pub(super) fn read<R: BufRead>(reader: &mut R) -> Result<Header, Fault> {
 #[derive(Default)]
 struct Kept {
     text: String,
-    /// The line of the file that each line of `text` is.
-    lines: Vec<u64>,
-    /// The elements, and the properties of the last one.
+    /// The line of the file behind each line of `text`: its number and content.
+    lines: Vec<(u64, Vec<u8>)>,
+    /// The names of the elements, and of the properties of the last one that matter.
     elements: HashSet<Vec<u8>>,
     properties: HashSet<Vec<u8>>,
 }
@@ -91,31 +95,42 @@ impl Kept {
                 self.properties.clear();
                 self.elements.insert(words.next().unwrap_or_default().to_vec())
             }
-            b"property" => self.properties.insert(words.next_back().unwrap_or_default().to_vec()),
+            b"property" => {
+                let name = words.next_back().unwrap_or_default();
+                if !COORDINATES.iter().chain(&CORNER_LISTS).any(|known| known.as_bytes() == name) {
+                    let definition = &line[..line.len() - name.len()];
+                    let renamed = [definition, format!("other_{number}").as_bytes()].concat();
+                    return self.keep(line, &renamed, number);
+                }
+                self.properties.insert(name.to_vec())
+            }
             _ => true,
         };
         if !is_new {
             return Err(Problem::syntax(line, "a name that was not used before").on_line(number));
         }
-        let text = std::str::from_utf8(line);
+        self.keep(line, line, number)
+    }
+
+    /// Keeps `text` in place of `line`.
+    fn keep(&mut self, line: &[u8], text: &[u8], number: u64) -> Result<(), Fault> {
+        let text = std::str::from_utf8(text);
         let text = text.map_err(|_| Problem::syntax(line, "a header line").on_line(number))?;
         self.text.push_str(text);
         self.text.push('\n');
-        self.lines.push(number);
+        self.lines.push((number, line.to_vec()));
         Ok(())
     }
 
     /// The line that `ply-rs-bw` does not understand.
     fn explain(&self, error: &ply_rs_bw::parser::ParseError) -> Fault {
-        let line = error.line().and_then(|line| line.checked_sub(1)).filter(|&i| i < self.lines.len());
+        let line = error.line().and_then(|line| self.lines.get(line.checked_sub(1)?));
         match line {
-            Some(i) => {
-                let text = self.text.lines().nth(i).unwrap_or_default();
-                Problem::syntax(text.as_bytes(), "a PLY header line (format, element, property)")
-                    .on_line(self.lines[i])
+            Some((number, line)) => {
+                Problem::syntax(line, "a PLY header line (format, element, property)").on_line(*number)
             }
             None => Problem::syntax(b"end_header", "a line \"format ascii 1.0\" or a binary format")
-                .on_line(self.lines.last().copied().unwrap_or(1)),
+                .on_line(self.lines.last().map_or(1, |(number, _)| *number)),
         }
     }
 }
@@ -139,7 +154,7 @@ fn check(role: Role, element: &ElementDef) -> Result<(), Problem> {
         matches!(element.properties.get(*name).map(|p| &p.data_type), Some(PropertyType::List(..)))
     };
     match role {
-        Role::Vertex => match ["x", "y", "z"].into_iter().find(|name| !is_scalar(name)) {
+        Role::Vertex => match COORDINATES.into_iter().find(|name| !is_scalar(name)) {
             None => Ok(()),
             Some(name) => Err(unsupported(format!("a vertex without the coordinate \"{name}\""))),
         },

@@ -1,0 +1,94 @@
+"""Checks a .vdb file of exocarp with Python's OpenVDB, which is independent of exocarp's own reader.
+
+usage: test_vdb.py FILE.vdb --sphere RADIUS --voxel H --half-width W --active N
+
+The file holds the level set of a sphere around the world origin. Exits with an AssertionError that says
+what is wrong.
+"""
+
+import argparse
+import random
+import struct
+
+try:
+    import pyopenvdb as vdb
+except ImportError:
+    import openvdb as vdb
+
+
+def as_f32(x):
+    return struct.unpack("f", struct.pack("f", x))[0]
+
+
+def check_header(path, grid, args):
+    """Name, class, background, transform, statistics and metadata: what programs ask first."""
+    assert grid.name == "surface", grid.name
+    assert grid.gridClass == vdb.GridClass.LEVEL_SET, grid.gridClass
+    assert abs(grid.background - args.half_width * args.voxel) < 1e-6 * grid.background, grid.background
+    assert grid.background >= as_f32(args.half_width * args.voxel), grid.background
+    assert grid.transform.voxelSize() == (args.voxel,) * 3, grid.transform.voxelSize()
+    assert grid.transform.indexToWorld((0, 0, 0)) == (0.0, 0.0, 0.0)
+    assert grid.activeVoxelCount() == args.active, (grid.activeVoxelCount(), args.active)
+    assert grid["file_voxel_count"] == args.active, grid["file_voxel_count"]
+    low, high = grid.evalActiveVoxelBoundingBox()
+    assert tuple(grid["file_bbox_min"]) == low, (grid["file_bbox_min"], low)
+    assert tuple(grid["file_bbox_max"]) == high, (grid["file_bbox_max"], high)
+    metadata = vdb.readMetadata(path)
+    metadata = metadata if isinstance(metadata, dict) else dict(metadata.items())
+    assert metadata["unit"] == "mm" and metadata["offset_distance"] == 0.5, metadata
+    assert metadata["voxel_size"] == args.voxel and metadata["half_width"] == args.half_width, metadata
+    assert metadata["creator"].startswith("exocarp"), metadata
+
+
+def check_band(grid):
+    """Active are exactly the nodes within the background; no tile is active."""
+    active = inactive = 0
+    for item in grid.iterOnValues():
+        assert item.depth == 3, "an active tile"
+        assert 0 < abs(item.value) < grid.background, item.value
+        active += 1
+    for item in grid.iterOffValues():
+        assert abs(item.value) == grid.background, item.value
+        inactive += 1
+    assert active and inactive
+
+
+def check_values(grid, phi, reach, background):
+    """1000 random nodes in and around the band, against the analytic distance."""
+    rng = random.Random(1)
+    accessor = grid.getConstAccessor()
+    counts = {"inside": 0, "outside": 0, "band": 0}
+    for _ in range(1000):
+        node = tuple(rng.randint(-reach, reach) for _ in range(3))
+        value, active = accessor.probeValue(node)
+        exact = phi(grid.transform.indexToWorld(node))
+        assert (value < 0) == (exact < 0), (node, value, exact)
+        clamped = max(-background, min(background, exact))
+        assert abs(value - clamped) <= 1e-6 * background, (node, value, exact)
+        assert active == (abs(value) < background), (node, value, active)
+        counts["band" if active else "inside" if value < 0 else "outside"] += 1
+    assert min(counts.values()) > 10, counts
+    print("1000 random nodes:", counts)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("file")
+    parser.add_argument("--sphere", type=float, required=True)
+    parser.add_argument("--voxel", type=float, required=True)
+    parser.add_argument("--half-width", type=float, required=True)
+    parser.add_argument("--active", type=int, required=True)
+    args = parser.parse_args()
+
+    # Not readAll: most builds of the module know no grids of 32-bit integers.
+    surface = vdb.read(args.file, "surface")
+    check_header(args.file, surface, args)
+    check_band(surface)
+    reach = int(1.5 * args.sphere / args.voxel)
+    check_values(
+        surface, lambda p: sum(c * c for c in p) ** 0.5 - args.sphere, reach, surface.background
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,6 @@
+//! The band in OpenVDB and its files: what goes in comes out, and other programs accept it.
+
+mod files;
+mod grids;
+mod python;
+mod sphere;
