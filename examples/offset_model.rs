@@ -1,0 +1,30 @@
+//! Offsets a generated model outward and inward and saves the results: `cargo run --release --example
+//! offset_model`.
+
+use exocarp::mesh::{measure, shapes};
+use exocarp::offset::{Length, OffsetSettings, VoxelSize, offset};
+use exocarp::run::RunSettings;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let model = shapes::carved_cube(shapes::DEFAULT_DETAIL);
+    let run = RunSettings::with_threads(0)?;
+    std::fs::create_dir_all("out")?;
+    println!("model: volume {:.4}", measure::signed_volume(&model));
+    for (name, distance) in [("grown", 0.1), ("shrunk", -0.1)] {
+        let settings = OffsetSettings {
+            distance: Length::Units(distance),
+            voxel: VoxelSize::Resolution(128),
+            ..OffsetSettings::default()
+        };
+        let result = offset(&model, &settings, &run)?;
+        let path = format!("out/example-{name}.ply");
+        result.mesh.save(&path)?;
+        println!(
+            "{path}: {} triangles, volume {:.4}, {:.2} s",
+            result.mesh.triangles.len(),
+            measure::signed_volume(&result.mesh),
+            result.statistics.times.total(),
+        );
+    }
+    Ok(())
+}
