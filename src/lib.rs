@@ -6,6 +6,7 @@ pub mod run;
 pub mod band;
 pub mod contour;
 pub mod edge;
+pub mod geom;
 pub mod io;
 pub mod mesh;
 pub mod offset;
