@@ -63,9 +63,10 @@ impl Grid {
         let far = lattice.voxel * f64::from(reach);
         // Two units in the last place: node planes and vertices are off by up to half a unit each. Half
         // a unit in all is the limit below which lattices fail.
-        let margin = MARGIN.max(2.0 * precision.ulp(far) / lattice.voxel);
-        if margin <= MAX_MARGIN && lattice.voxel > 0.0 {
-            Ok(Grid { lattice, precision, margin })
+        let least = 2.0 * precision.ulp(far) / lattice.voxel;
+        // False for what is not a number, too.
+        if least <= MAX_MARGIN && lattice.voxel > 0.0 {
+            Ok(Grid { lattice, precision, margin: MARGIN.max(least) })
         } else {
             Err(ContourError::TooFarFromOrigin { far, voxel: lattice.voxel, precision })
         }
@@ -149,9 +150,9 @@ mod tests {
     fn margins_grow_with_the_distance() {
         let lattice = Lattice { voxel: 0.1 };
         assert_eq!(Grid::new(lattice, Precision::F32, 100).unwrap().margin(), MARGIN);
-        let far = Grid::new(lattice, Precision::F32, 1_000_000).unwrap();
-        assert!(far.margin() > 0.1 && far.margin() < MAX_MARGIN);
-        assert!(Grid::new(lattice, Precision::F32, 10_000_000).is_err());
+        let far = Grid::new(lattice, Precision::F32, 600_000).unwrap();
+        assert!(far.margin() > 0.05 && far.margin() < MAX_MARGIN);
+        assert!(Grid::new(lattice, Precision::F32, 1_000_000).is_err());
         assert_eq!(Grid::new(lattice, Precision::F64, 10_000_000).unwrap().margin(), MARGIN);
         for voxel in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-60, 1e60] {
             assert!(Grid::new(Lattice { voxel }, Precision::F32, 10).is_err(), "{voxel}");

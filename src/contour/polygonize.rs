@@ -210,14 +210,38 @@ mod tests {
         assert_eq!(cut(&points, [0.0, 0.0, 1.0]).1, [[0, 1, 2], [2, 3, 0]]);
     }
 
+    /// Corners anywhere in their cells: [LW11] Remarks 10 and 11.
     #[test]
-    fn two_concave_corners_force_a_split() {
-        // Corners 0 and 1 close to the ends of the edge, the others far away: [LW11] figure 10.
-        let points = [[0.05, 0.05, 0.95], [-0.05, 0.05, 0.05], [-0.9, -0.9, 0.9], [0.9, -0.9, 0.1]];
-        let (kind, triangles) = cut(&points, [0.0, 0.0, 1.0]);
-        assert_eq!(kind, Cut::Split);
-        assert_eq!(triangles.len(), 4);
-        assert!(triangles.iter().all(|t| t[2] == EDGE_VERTEX));
+    fn opposite_corners_are_never_concave_and_neighbours_force_a_split() {
+        let mut state = 3u64;
+        let mut random = move || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let (mut splits, mut single) = (0, 0);
+        for _ in 0..20_000 {
+            let points: [[f64; 3]; 4] = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]].map(|[x, y]| {
+                // Cubes, to have many close to the edge.
+                [x * (1e-3 + random().powi(3)), y * (1e-3 + random().powi(3)), 1e-3 + 0.998 * random()]
+            });
+            let concave: [bool; 4] = std::array::from_fn(|i| {
+                !ENVELOPE.is_good(points[(i + 3) % 4], points[i], points[(i + 1) % 4])
+            });
+            assert!(!(concave[0] && concave[2]) && !(concave[1] && concave[3]), "{points:?}");
+            let (kind, triangles) = cut(&points, [0.0, 0.0, 1.0]);
+            match concave.iter().filter(|&&c| c).count() {
+                2 => {
+                    assert_eq!((kind, triangles.len()), (Cut::Split, 4));
+                    assert!(triangles.iter().all(|t| t[2] == EDGE_VERTEX));
+                    splits += 1;
+                }
+                count => {
+                    assert_eq!((kind, triangles.len()), (Cut::Diagonals, 2));
+                    single += count;
+                }
+            }
+        }
+        assert!(splits > 100 && single > 100, "{splits} {single}");
     }
 
     #[test]
