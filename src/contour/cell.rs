@@ -118,11 +118,6 @@ impl EdgeSet {
         self.0.count_ones() as usize
     }
 
-    /// Whether the set has no edge.
-    pub const fn is_empty(self) -> bool {
-        self.0 == 0
-    }
-
     /// Whether `edge` is in the set.
     pub const fn contains(self, edge: Edge) -> bool {
         self.0 >> edge.0 & 1 == 1
@@ -153,16 +148,6 @@ impl FromIterator<Edge> for EdgeSet {
     }
 }
 
-/// One of the two sides of a cell along an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Side {
-    /// Towards lower coordinates.
-    Lower = 0,
-    /// Towards higher coordinates.
-    Upper = 1,
-}
-
 /// A face of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Face(u8);
@@ -173,9 +158,9 @@ impl Face {
         (0..6).map(Face)
     }
 
-    /// The face across `axis` on `side`.
-    pub const fn new(axis: Axis, side: Side) -> Face {
-        Face(2 * axis as u8 + side as u8)
+    /// The face across `axis` on the upper side.
+    pub const fn upper(axis: Axis) -> Face {
+        Face(2 * axis as u8 + 1)
     }
 
     /// The face's number, 0..6.
@@ -239,7 +224,7 @@ mod tests {
                 assert_eq!(corners[i].side(face.axis()), face.index() as u8 & 1);
             }
         }
-        assert_eq!(Face::new(Axis::Y, Side::Upper).index(), 3);
+        assert_eq!(Face::upper(Axis::Y).index(), 3);
         for edge in Edge::all() {
             assert_eq!(Face::all().filter(|f| f.edges().contains(&edge)).count(), 2);
         }

@@ -13,7 +13,7 @@
 //!     c ------ n1
 //! ```
 
-use super::cell::{Corner, Edge, Face, Side};
+use super::cell::{Corner, Edge, Face};
 use super::grid::Grid;
 use super::numbering::{CellId, CellNumbers, locate};
 use super::sheets::{Case, Pair};
@@ -52,7 +52,7 @@ impl FaceVertices {
         if marks.pairs >> (2 * axis as u8) & 3 == 0 {
             return None;
         }
-        let bit = 2 * axis as usize + case.pair_of(Face::new(axis, Side::Upper), edge)?;
+        let bit = 2 * axis as usize + case.pair_of(Face::upper(axis), edge)?;
         if marks.pairs >> bit & 1 == 0 {
             return None;
         }
@@ -61,7 +61,7 @@ impl FaceVertices {
     }
 }
 
-/// Finds the pairs that need a face vertex. Face vertices are numbered from `first` on.
+/// Finds the pairs that need a face vertex. Face vertices are numbered on from the cell vertices `vertices`.
 ///
 /// # Errors
 /// More than 2^32 - 1 vertices, or cancellation.
@@ -103,7 +103,7 @@ fn in_leaf(cells: &Cells<'_>, vertices: &[[f64; 3]], leaf: LeafId, marks: &mut [
         let cell = numbers.id(leaf, number);
         let case = cells.case(cell);
         for axis in Axis::ALL {
-            let face = Face::new(axis, Side::Upper);
+            let face = Face::upper(axis);
             if case.pairs(face).is_empty() {
                 continue;
             }

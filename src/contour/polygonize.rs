@@ -227,7 +227,7 @@ mod tests {
             let concave: [bool; 4] = std::array::from_fn(|i| {
                 !ENVELOPE.is_good(points[(i + 3) % 4], points[i], points[(i + 1) % 4])
             });
-            assert!(!(concave[0] && concave[2]) && !(concave[1] && concave[3]), "{points:?}");
+            assert!((0..2).all(|i| !(concave[i] && concave[i + 2])), "{points:?}");
             let (kind, triangles) = cut(&points, [0.0, 0.0, 1.0]);
             match concave.iter().filter(|&&c| c).count() {
                 2 => {

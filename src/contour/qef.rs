@@ -48,25 +48,20 @@ impl Qef {
     #[inline]
     pub fn add(&mut self, point: [f64; 3], normal: [f64; 3]) {
         self.count += 1.0;
-        for a in 0..3 {
-            self.points[a] += point[a];
-        }
+        self.points = add(self.points, 1.0, point);
         let distance = dot(normal, point);
         if !distance.is_finite() {
             return;
         }
         self.matrix.add_outer(normal);
-        for a in 0..3 {
-            self.right[a] += normal[a] * distance;
-        }
+        self.right = add(self.right, distance, normal);
     }
 
     /// The least point of the function, nearest to the mean of the added points where it is not unique.
     /// At least one plane must have been added.
     pub fn minimiser(&self) -> Minimiser {
         let mean = self.points.map(|x| x / self.count);
-        let shift = self.matrix.times(mean);
-        let right: [f64; 3] = std::array::from_fn(|a| self.right[a] - shift[a]);
+        let right = add(self.right, -1.0, self.matrix.times(mean));
         let eigen = self.matrix.eigen();
         let largest = eigen.values[0];
         let mut point = mean;
@@ -75,9 +70,7 @@ impl Qef {
             for ((value, vector), weight) in eigen.values.iter().zip(eigen.vectors).zip(&mut weights) {
                 if *value > CUTOFF * largest {
                     let step = dot(vector, right) / value;
-                    for a in 0..3 {
-                        point[a] += step * vector[a];
-                    }
+                    point = add(point, step, vector);
                 }
                 *weight = (value / largest).max(CUTOFF);
             }
@@ -161,9 +154,7 @@ impl Minimiser {
         }
         let mut w = self.point;
         for i in 0..k {
-            for a in 0..3 {
-                w[a] += multipliers[i] * pulled[i][a];
-            }
+            w = add(w, multipliers[i], pulled[i]);
         }
         Some(w)
     }
@@ -173,9 +164,7 @@ impl Minimiser {
         let mut out = [0.0; 3];
         for (vector, weight) in self.vectors.iter().zip(self.weights) {
             let part = dot(*vector, v) / weight;
-            for a in 0..3 {
-                out[a] += part * vector[a];
-            }
+            out = add(out, part, *vector);
         }
         out
     }
@@ -198,6 +187,12 @@ fn solve(rows: [[f64; 3]; 3], right: [f64; 3]) -> Option<[f64; 3]> {
 #[inline]
 pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// a + scale b.
+#[inline]
+fn add(a: [f64; 3], scale: f64, b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| a[i] + scale * b[i])
 }
 
 #[inline]

@@ -214,7 +214,7 @@ impl CaseTable {
             let plain = Case::new(mask, FaceChoice::INSIDE_APART);
             let faces = if CHECKERBOARDS.contains(&mask) { 0 } else { plain.ambiguous };
             for packed in 0..1u8 << faces.count_ones() {
-                rows.push(Case::new(mask, FaceChoice(unpack(packed, faces))));
+                rows.push(Case::new(mask, FaceChoice::from_bits(unpack(packed, faces))));
             }
             (first, faces)
         });

@@ -1,7 +1,7 @@
 //! The vertex of a sheet: as close to the minimiser of its quadratic error function as its cell and its
 //! walls allow.
 
-use super::cell::Edge;
+use super::cell::{Edge, EdgeSet};
 use super::grid::Grid;
 use super::qef::Qef;
 use super::region::Region;
@@ -66,7 +66,7 @@ pub fn place<'a>(
             return (position, placement);
         }
     }
-    let start = start(grid, cell, edges.iter(), &crossing, fits);
+    let start = start(grid, cell, edges, &crossing, fits);
     let target = grid.ideal(cell, target.unwrap_or(minimiser.point));
     let towards = |share: f64| grid.round(mix(start, target, share));
     let position = (0..HALVINGS).map(|n| towards(0.5f64.powi(n))).find(|&position| fits(position));
@@ -78,14 +78,13 @@ pub fn place<'a>(
 fn start<'a>(
     grid: &Grid,
     cell: Ijk,
-    edges: impl Iterator<Item = Edge>,
+    edges: EdgeSet,
     crossing: impl Fn(Edge) -> &'a Crossing,
     fits: impl Fn([f64; 3]) -> bool,
 ) -> [f64; 3] {
-    let (mut mean, mut middle, mut count) = ([0.0; 3], [0.0; 3], 0.0);
-    for edge in edges {
+    let (mut mean, mut middle, count) = ([0.0; 3], [0.0; 3], edges.len() as f64);
+    for edge in edges.iter() {
         let (point, midpoint) = (on_edge(edge, grid.clamp(crossing(edge).t)), on_edge(edge, 0.5));
-        count += 1.0;
         for a in 0..3 {
             mean[a] += point[a];
             middle[a] += midpoint[a];

@@ -172,7 +172,7 @@ fn rotated_boxes_have_their_corners() {
                 } else {
                     // The corner pokes out of the cells that see its planes; their vertices cannot follow.
                     blunt += 1;
-                    assert!(distance < 0.5 * voxel, "{distance}");
+                    assert!(distance < voxel, "{distance}");
                 }
             }
         }
