@@ -134,7 +134,7 @@ fn zero_distance_keeps_a_box_sharp() {
     let errors: Vec<f64> = errors.collect();
     // A vertex whose crease passes outside its cell stays in the cell, and misses the crease.
     let exact = errors.iter().filter(|&&e| e < 1e-5).count();
-    assert!(exact as f64 > 0.97 * errors.len() as f64, "{exact} of {}", errors.len());
+    assert!(exact as f64 > 0.95 * errors.len() as f64, "{exact} of {}", errors.len());
     assert!(errors.iter().all(|&e| e < 0.5), "{errors:?}");
 }
 
