@@ -177,7 +177,8 @@ fn rotated_boxes_have_their_corners() {
             }
         }
     }
-    assert!(exact > blunt, "{exact} exact corners, {blunt} blunt ones");
+    // The cells of most corners of a rotated box see two planes or fewer.
+    assert!(exact >= 40, "{exact} exact corners, {blunt} blunt ones");
 }
 
 #[test]
