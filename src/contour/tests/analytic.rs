@@ -194,6 +194,18 @@ fn aligned_boxes_are_exact() {
     assert!(mesh.vertices.iter().all(|&v| solid.at(v).0.abs() < 1e-6));
 }
 
+/// Plates thinner than a voxel, where most cells have two sheets and some are missed by the lattice.
+#[test]
+fn thin_plates_are_clean() {
+    for half in [0.2, 0.35, 0.6] {
+        let mut plate = solid_box(frame(), [0.01, 0.02, 0.03], [7.0, 6.0, half]).0;
+        plate.0.push(([0.0, 0.6, 0.8], 5.0));
+        let (mesh, statistics) = run(&sample(&plate, 12, 1.0), 1.0, Precision::F32, 2);
+        assert_clean(&mesh);
+        assert!(statistics.several_sheets > 20, "{statistics:?}");
+    }
+}
+
 #[test]
 fn threads_do_not_change_a_byte() {
     let field = sample(&Ball { centre: [0.3; 3], radius: 19.0 }, 21, 1.0);
