@@ -14,10 +14,11 @@
 //! ```
 
 use super::cell::{Corner, Edge, Face};
+use super::cells::{Cells, split};
 use super::grid::Grid;
 use super::numbering::{CellId, CellNumbers, locate};
 use super::sheets::{Case, Pair};
-use super::{Cells, TooManyVertices};
+use super::{ContourError, TooManyVertices};
 use crate::band::{Axis, Ijk, LeafId, SignField};
 use crate::edge::{Crossings, bits};
 use crate::geom::predicates::orient3d;
@@ -69,11 +70,11 @@ pub fn face_vertices(
     cells: &Cells<'_>,
     vertices: &[[f64; 3]],
     run: &RunSettings,
-) -> Result<FaceVertices, super::ContourError> {
+) -> Result<FaceVertices, ContourError> {
     let (signs, numbers) = (cells.signs, cells.numbers);
     let leaves: Vec<LeafId> = signs.leaves().collect();
     let mut marks = vec![Marks::default(); numbers.len()];
-    let slices = super::split(&mut marks, leaves.iter().map(|&leaf| numbers.range(leaf).len()));
+    let slices = split(&mut marks, leaves.iter().map(|&leaf| numbers.range(leaf).len()));
     let per_leaf: Vec<Vec<[f64; 3]>> = leaves
         .par_iter()
         .zip(slices)

@@ -18,7 +18,7 @@
 //! | `grid` | the lattice rounded to the output's precision, before any decision |
 //! | `cell`, `sheets` | the cube, and its 256 masks: pairs on faces, sheets, caps and their walls |
 //! | `numbering` | active cells and their vertices, numbered by ranks in bit masks |
-//! | `qef`, `region`, `vertex` | the vertex of a sheet within its cell and its walls |
+//! | `cells`, `qef`, `region`, `vertex` | the vertex of each sheet within its cell and its walls |
 //! | `face_vertex` | vertices on faces where a connection would get in another sheet's way |
 //! | `envelope`, `polygonize` | convex/concave analysis, and the triangles around an edge |
 //!
@@ -27,6 +27,7 @@
 //! separate the cones of different sheets, and a disc of good triangles stays in its edge's tetrahedra.
 
 mod cell;
+mod cells;
 mod envelope;
 mod face_vertex;
 mod grid;
@@ -42,16 +43,13 @@ mod vertex;
 pub use grid::Precision;
 pub use statistics::ContourStatistics;
 
-use crate::band::{Ijk, Lattice, LeafId, SignField};
-use crate::edge::{Crossings, bits};
+use crate::band::{Lattice, SignField};
+use crate::edge::Crossings;
 use crate::mesh::TriMesh;
-use crate::run::{Cancelled, Phase, PhaseGuard, RunSettings};
-use cell::Edge;
+use crate::run::{Cancelled, Phase, RunSettings};
+use cells::Cells;
 use grid::Grid;
-use numbering::{CellId, CellNumbers, CornerSigns, constant_case, locate};
-use rayon::prelude::*;
-use sheets::{Case, CaseId, CaseTable};
-use vertex::Placement;
+use numbering::CellNumbers;
 
 /// Settings of [`contour`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -113,9 +111,7 @@ pub fn contour(
     let phase = run.phase(Phase::Contour, 2 * signs.len() as u64);
     run.install(|| {
         let numbers = CellNumbers::new(signs, run)?;
-        let (cases, mut vertices, mut statistics) =
-            place_vertices(signs, crossings, &grid, &numbers, &phase)?;
-        let cells = Cells { signs, crossings, grid, numbers: &numbers, cases };
+        let (cells, mut vertices, mut statistics) = Cells::place(signs, crossings, grid, &numbers, &phase)?;
         let mut faces = face_vertex::face_vertices(&cells, &vertices, run)?;
         vertices.append(&mut faces.positions);
         statistics.face_vertices = vertices.len() as u64 - u64::from(numbers.vertices());
@@ -133,115 +129,6 @@ fn reach(signs: &SignField, crossings: &Crossings) -> u32 {
     let sizes = crossed.flat_map(|leaf| signs.origin(leaf).0.map(i32::unsigned_abs));
     // A leaf has 8 nodes, and cells reach one node further.
     sizes.max().unwrap_or(0).saturating_add(9)
-}
-
-/// The active cells with everything that is known of them.
-struct Cells<'a> {
-    signs: &'a SignField,
-    crossings: &'a Crossings,
-    grid: Grid,
-    numbers: &'a CellNumbers,
-    cases: Vec<CellCase>,
-}
-
-/// The case of an active cell, and its vertices.
-#[derive(Clone, Copy, Debug, Default)]
-struct CellCase {
-    /// The number of the vertex of sheet 0; the other sheets' follow.
-    first_vertex: u32,
-    case: CaseId,
-}
-
-impl Cells<'_> {
-    #[inline]
-    fn case(&self, cell: CellId) -> &'static Case {
-        CaseTable::get().case(self.cases[cell.0 as usize].case)
-    }
-
-    /// The number of the vertex of the sheet of `cell` through the crossing of `edge`.
-    #[inline]
-    fn vertex(&self, cell: CellId, edge: Edge) -> u32 {
-        let CellCase { first_vertex, case } = self.cases[cell.0 as usize];
-        first_vertex + CaseTable::get().case(case).sheet_of(edge)
-    }
-}
-
-/// The cases of all active cells, and the positions of their vertices.
-#[allow(clippy::type_complexity)]
-fn place_vertices(
-    signs: &SignField,
-    crossings: &Crossings,
-    grid: &Grid,
-    numbers: &CellNumbers,
-    phase: &PhaseGuard<'_>,
-) -> Result<(Vec<CellCase>, Vec<[f64; 3]>, ContourStatistics), ContourError> {
-    let mut cases = vec![CellCase::default(); numbers.len()];
-    let mut vertices = vec![[0.0; 3]; numbers.vertices() as usize];
-    let leaves: Vec<LeafId> = signs.leaves().collect();
-    let case_slices = split(&mut cases, leaves.iter().map(|&leaf| numbers.range(leaf).len()));
-    let vertex_slices = split(&mut vertices, leaves.iter().map(|&leaf| numbers.vertex_range(leaf).len()));
-    let statistics = leaves
-        .par_iter()
-        .zip(case_slices)
-        .zip(vertex_slices)
-        .with_min_len(16)
-        .map(|((&leaf, cases), vertices)| {
-            phase.advance(1)?;
-            Ok(place_in_leaf(signs, crossings, grid, numbers, leaf, cases, vertices))
-        })
-        .try_reduce(ContourStatistics::default, |mut a, b| {
-            a += b;
-            Ok::<_, Cancelled>(a)
-        })?;
-    Ok((cases, vertices, statistics))
-}
-
-/// Fills in the cases and the vertices of the cells of one leaf.
-fn place_in_leaf(
-    signs: &SignField,
-    crossings: &Crossings,
-    grid: &Grid,
-    numbers: &CellNumbers,
-    leaf: LeafId,
-    cases: &mut [CellCase],
-    vertices: &mut [[f64; 3]],
-) -> ContourStatistics {
-    let mut statistics = ContourStatistics { cells: cases.len() as u64, ..Default::default() };
-    let Some(corners) = CornerSigns::new(signs, leaf) else { return statistics };
-    let table = CaseTable::get();
-    let first_vertex = numbers.vertex_range(leaf).start as u32;
-    let mut done = 0;
-    for (cell, number) in cases.iter_mut().zip(bits(numbers.active(leaf))) {
-        let id = constant_case(table, corners.mask(number));
-        *cell = CellCase { first_vertex: first_vertex + done as u32, case: id };
-        let case = table.case(id);
-        statistics.several_sheets += u64::from(case.has_several_sheets());
-        let local = Ijk::in_leaf(Ijk::default(), number);
-        let crossing = |edge: Edge| {
-            let (at, number) = locate(signs, leaf, (local + Ijk(edge.low().offset())).0);
-            let id = crossings.numbers.get(at, edge.axis(), number).expect("the edge changes sign");
-            crossings.sample(id)
-        };
-        for sheet in 0..case.sheets().len() {
-            let (position, placement) =
-                vertex::place(grid, signs.origin(leaf) + local, case, sheet, crossing);
-            vertices[done] = position;
-            done += 1;
-            statistics.clamped += u64::from(placement == Placement::Clamped);
-        }
-    }
-    statistics
-}
-
-/// Cuts a slice into consecutive parts of the given lengths.
-fn split<T>(mut slice: &mut [T], lengths: impl Iterator<Item = usize>) -> Vec<&mut [T]> {
-    lengths
-        .map(|length| {
-            let (part, rest) = std::mem::take(&mut slice).split_at_mut(length);
-            slice = rest;
-            part
-        })
-        .collect()
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
 //! The polygons around all crossed edges, cut into triangles and collected to a mesh.
 
 use super::cell::Edge;
+use super::cells::{Cells, split};
 use super::envelope::Envelope;
 use super::face_vertex::FaceVertices;
 use super::polygonize::{Cut, EDGE_VERTEX, Polygon, PolygonCorner, Tangent, polygonize};
-use super::{Cells, ContourError, ContourStatistics, TooManyVertices};
+use super::{ContourError, ContourStatistics, TooManyVertices};
 use crate::band::{Axis, Ijk, LeafId};
 use crate::edge::EdgeId;
 use crate::mesh::TriMesh;
@@ -42,21 +43,21 @@ pub fn triangulate(
         .collect::<Result<_, Cancelled>>()?;
 
     let count: usize = outputs.iter().map(|o| o.triangles.len()).sum();
-    let split: usize = outputs.iter().map(|o| o.edge_vertices.len()).sum();
+    let hubs: usize = outputs.iter().map(|o| o.edge_vertices.len()).sum();
     let quads = outputs.iter().map(|o| o.quads).sum::<u64>();
     // The number that stands for an edge vertex must stay free.
-    if (vertices.len() + split) as u64 >= u64::from(EDGE_VERTEX) {
+    if (vertices.len() + hubs) as u64 >= u64::from(EDGE_VERTEX) {
         return Err(TooManyVertices.into());
     }
     let shared = vertices.len() as u32;
-    vertices.reserve_exact(split);
+    vertices.reserve_exact(hubs);
     let mut firsts = Vec::with_capacity(outputs.len());
     for output in &outputs {
         firsts.push(vertices.len() as u32 - shared);
         vertices.extend_from_slice(&output.edge_vertices);
     }
     let mut triangles = vec![[0; 3]; count];
-    let parts = super::split(&mut triangles, outputs.iter().map(|o| o.triangles.len()));
+    let parts = split(&mut triangles, outputs.iter().map(|o| o.triangles.len()));
     outputs.into_par_iter().zip(firsts).zip(parts).with_min_len(16).for_each(|((output, first), part)| {
         for (to, from) in part.iter_mut().zip(output.triangles) {
             *to = from.map(|v| if v < shared { v } else { v + first });
@@ -64,8 +65,8 @@ pub fn triangulate(
     });
     let statistics = ContourStatistics {
         quads,
-        diagonal: quads - split as u64,
-        split: split as u64,
+        diagonal: quads - hubs as u64,
+        split: hubs as u64,
         ..ContourStatistics::default()
     };
     Ok((TriMesh { vertices, triangles }, statistics))

@@ -177,7 +177,8 @@ fn rotated_boxes_have_their_corners() {
             }
         }
     }
-    assert!(exact > blunt, "{exact} exact corners, {blunt} blunt ones");
+    // The cells of most corners of a rotated box see two planes or fewer.
+    assert!(exact >= 40, "{exact} exact corners, {blunt} blunt ones");
 }
 
 #[test]
@@ -191,6 +192,18 @@ fn aligned_boxes_are_exact() {
     // Nothing of the box is missing: all edges are sharp.
     assert!((volume(&mesh) - 8.0 * 5.125 * 4.0625 * 3.25).abs() < 1e-4, "{}", volume(&mesh));
     assert!(mesh.vertices.iter().all(|&v| solid.at(v).0.abs() < 1e-6));
+}
+
+/// Plates thinner than a voxel, where most cells have two sheets and some are missed by the lattice.
+#[test]
+fn thin_plates_are_clean() {
+    for half in [0.2, 0.35, 0.6] {
+        let mut plate = solid_box(frame(), [0.01, 0.02, 0.03], [7.0, 6.0, half]).0;
+        plate.0.push(([0.0, 0.6, 0.8], 5.0));
+        let (mesh, statistics) = run(&sample(&plate, 12, 1.0), 1.0, Precision::F32, 2);
+        assert_clean(&mesh);
+        assert!(statistics.several_sheets > 20, "{statistics:?}");
+    }
 }
 
 #[test]
