@@ -1,3 +1,9 @@
-//! The program `exocarp`.
+//! The program `exocarp`: offset surfaces of triangle meshes from the command line.
+//!
+//! It uses nothing but the library's public API.
 
-fn main() {}
+mod cli;
+
+fn main() -> std::process::ExitCode {
+    cli::main()
+}

@@ -1,0 +1,198 @@
+//! The arguments, their units and their help.
+
+use super::numbers::{bytes, length, resolution, voxel};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use exocarp::offset::{Length, SignMode};
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  exocarp model carved_cube -o cube.ply
+  exocarp offset cube.ply -d 2% -o grown.ply
+  exocarp offset cube.ply -d -2% --resolution 512 -o shrunk.stl --vdb shrunk.vdb
+  exocarp info shrunk.vdb
+
+Exit codes: 0 done, 1 internal error, 2 wrong use, 3 bad input, 4 the result is empty,
+5 a limit was hit (memory, size), 130 interrupted.";
+
+const OFFSET_EXAMPLES: &str = "\
+Examples:
+  exocarp offset part.stl -d 0.5 -o grown.stl              0.5 model units outward
+  exocarp offset part.stl -d -2% -o shrunk.ply             2% of the diagonal inward
+  exocarp offset part.stl -d 0 --voxel 0.1 -o remesh.obj   a sharp, clean remesh
+  exocarp offset part.stl -d 1% -o a.ply --vdb a.vdb --stats a.json
+  exocarp offset scan.ply -d 1% --sign pseudonormal -o a.ply   an input with holes
+
+Lengths are in model units (those of the input file); percentages are of the diagonal of the input's
+bounding box. Formats by extension, in and out: .obj .ply .stl .off";
+
+const MODEL_EXAMPLES: &str = "\
+Examples:
+  exocarp model                                    the list of models
+  exocarp model anchor -o anchor.stl
+  exocarp model sphere --detail 64 -o sphere.ply";
+
+const INFO_EXAMPLES: &str = "\
+Examples:
+  exocarp info part.stl
+  exocarp info band.vdb
+  exocarp info part.stl --json";
+
+/// Offset surfaces of triangle meshes: closed, free of self-intersections, with sharp features, and their
+/// narrow band as OpenVDB.
+#[derive(Debug, Parser)]
+#[command(name = "exocarp", version, after_help = EXAMPLES, arg_required_else_help = true)]
+#[command(disable_help_subcommand = true)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    pub common: Common,
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What every command takes.
+#[derive(Args, Debug)]
+pub(super) struct Common {
+    /// Number of worker threads [default: all cores]
+    #[arg(long, global = true, help_heading = "Everywhere", value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+    /// Print nothing but errors
+    #[arg(long, short, global = true, help_heading = "Everywhere", conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Print phases and counts as well
+    #[arg(long, short, global = true, help_heading = "Everywhere")]
+    pub verbose: bool,
+    /// Refuse to start what would need more memory, in bytes or with K, M or G (powers of 1024)
+    /// [default: what the system has available]
+    #[arg(long, global = true, help_heading = "Everywhere", value_name = "BYTES", value_parser = bytes)]
+    pub max_memory: Option<u64>,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Offset a mesh: the closed surface at a signed distance from it
+    Offset(OffsetArguments),
+    /// Write a generated model; without a name, list them
+    Model(ModelArguments),
+    /// Print what a mesh or a .vdb file holds
+    Info(InfoArguments),
+    /// Print a completion script for a shell
+    #[command(hide = true)]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+}
+
+/// `exocarp offset`.
+#[derive(Args, Debug)]
+#[command(after_help = OFFSET_EXAMPLES)]
+pub(super) struct OffsetArguments {
+    /// The mesh to offset
+    pub input: PathBuf,
+    /// Signed distance in model units, or in percent of the input's diagonal: positive grows,
+    /// negative shrinks, 0 remeshes
+    #[arg(long, short, value_name = "D", value_parser = length, allow_hyphen_values = true)]
+    pub distance: Length,
+    /// Where to write the offset surface
+    #[arg(long, short, value_name = "OUTPUT")]
+    pub output: PathBuf,
+    /// Voxel size in model units
+    #[arg(long, value_name = "H", value_parser = voxel, allow_negative_numbers = true)]
+    #[arg(conflicts_with = "resolution")]
+    pub voxel: Option<f64>,
+    /// Voxels along the longest side of the result's bounding box [default: 256]
+    #[arg(long, value_name = "N", value_parser = resolution, allow_negative_numbers = true)]
+    pub resolution: Option<u32>,
+    /// Where inside and outside come from
+    #[arg(long, value_enum, default_value_t = Sign::Closed)]
+    pub sign: Sign,
+    /// Write PLY with 64-bit coordinates
+    #[arg(long)]
+    pub f64: bool,
+    /// Write the narrow band as an OpenVDB level set, too
+    #[arg(long, value_name = "FILE.vdb")]
+    pub vdb: Option<PathBuf>,
+    /// Compression of the .vdb file
+    #[arg(long, value_enum, default_value_t = Codec::Blosc, requires = "vdb")]
+    pub vdb_compression: Codec,
+    /// Store the .vdb file's distances as 16-bit floats
+    #[arg(long, requires = "vdb")]
+    pub half: bool,
+    /// The model's unit, written into the .vdb file's metadata (mm, cm, in, ...)
+    #[arg(long, requires = "vdb", value_name = "UNIT")]
+    pub unit: Option<String>,
+    /// Write settings, times and counts as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub stats: Option<PathBuf>,
+}
+
+/// `--sign`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Sign {
+    /// The input is closed and consistently oriented, or refused
+    Closed,
+    /// Take any input; where the sign jumps at its holes, the result is closed there
+    Pseudonormal,
+}
+
+impl Sign {
+    /// The name in the statistics file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Sign::Closed => "closed",
+            Sign::Pseudonormal => "pseudonormal",
+        }
+    }
+
+    pub fn mode(self) -> SignMode {
+        match self {
+            Sign::Closed => SignMode::Closed,
+            Sign::Pseudonormal => SignMode::Pseudonormal,
+        }
+    }
+}
+
+/// `--vdb-compression`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Codec {
+    /// Small and quick
+    Blosc,
+    /// For readers that lack Blosc
+    Zip,
+    /// Not compressed
+    None,
+}
+
+/// `exocarp model`.
+#[derive(Args, Debug)]
+#[command(after_help = MODEL_EXAMPLES)]
+pub(super) struct ModelArguments {
+    /// The model's name
+    #[arg(requires = "output")]
+    pub name: Option<String>,
+    /// Where to write it
+    #[arg(long, short, value_name = "OUTPUT", requires = "name")]
+    pub output: Option<PathBuf>,
+    /// Triangle sides per unit of length; the models are two to three units long
+    #[arg(long, value_name = "N", default_value_t = exocarp::mesh::shapes::DEFAULT_DETAIL)]
+    // More would need gigabytes for a test model.
+    #[arg(value_parser = clap::value_parser!(u32).range(2..=512))]
+    pub detail: u32,
+    /// Write PLY with 64-bit coordinates
+    #[arg(long)]
+    pub f64: bool,
+}
+
+/// `exocarp info`.
+#[derive(Args, Debug)]
+#[command(after_help = INFO_EXAMPLES)]
+pub(super) struct InfoArguments {
+    /// A mesh or a .vdb file
+    pub file: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}

@@ -1,0 +1,43 @@
+//! `exocarp model`: generated models.
+
+use super::args::ModelArguments;
+use super::exit::Failure;
+use super::numbers::{counted, short};
+use super::offset::{check_mesh_output, coordinates, save_mesh};
+use super::outputs;
+use super::session::{Session, print};
+use exocarp::mesh::shapes::{self, Shape};
+use exocarp::run::Phase;
+
+pub(super) fn run(arguments: &ModelArguments, session: &Session) -> Result<(), Failure> {
+    let (Some(name), Some(output)) = (&arguments.name, &arguments.output) else {
+        print(&list());
+        return Ok(());
+    };
+    let Some(shape) = shapes::by_name(name) else {
+        return Err(Failure::usage(format!("there is no model {name:?}; exocarp model lists them")));
+    };
+    check_mesh_output(output, arguments.f64)?;
+    outputs::check([output.as_path()])?;
+    let mesh = (shape.make)(arguments.detail);
+    session.phase(Phase::Write, || save_mesh(&mesh, output, coordinates(arguments.f64), session))?;
+    session.staging.commit()?;
+    session.tell(&format!(
+        "{}: {}, {}",
+        output.display(),
+        counted(mesh.triangles.len(), "triangle", "triangles"),
+        counted(mesh.vertices.len(), "vertex", "vertices"),
+    ));
+    Ok(())
+}
+
+fn list() -> String {
+    let width = |of: fn(&Shape) -> usize| shapes::ALL.iter().map(of).max().unwrap_or(0);
+    let (name, about) = (width(|s| s.name.len()), width(|s| s.about.len()));
+    let mut text = format!("{:name$}  {:about$}  volume\n", "model", "what it is");
+    for shape in shapes::ALL {
+        let volume = shape.volume.map_or("open".into(), |v| short(v.value()));
+        text += &format!("{:name$}  {:about$}  {volume}\n", shape.name, shape.about);
+    }
+    text + "\nexocarp model NAME -o FILE writes one."
+}

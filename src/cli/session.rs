@@ -1,0 +1,122 @@
+//! What all commands share: verbosity, threads, the interrupt, the time.
+
+use super::args::Common;
+use super::exit::{Exit, Failure, say, say_interrupted};
+use super::outputs::Staging;
+use super::progress::Bar;
+use exocarp::run::{CancelToken, Phase, RunSettings};
+use std::io::{IsTerminal, Write};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// How much to say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Verbosity {
+    /// Errors only.
+    Quiet,
+    /// A line per result, warnings, and a progress bar on a terminal.
+    Normal,
+    /// Phases and counts as well.
+    Verbose,
+}
+
+/// A running command.
+pub(super) struct Session {
+    pub started: Instant,
+    pub verbosity: Verbosity,
+    pub run: RunSettings,
+    /// The memory that may be used, in bytes; `None` for what the system has available.
+    pub max_memory: Option<u64>,
+    /// The files being written.
+    pub staging: Staging,
+    bar: Option<Arc<Bar>>,
+}
+
+impl Session {
+    /// Starts the threads and installs the interrupt handler.
+    pub fn start(common: &Common, started: Instant) -> Result<Self, Failure> {
+        let verbosity = match (common.quiet, common.verbose) {
+            (true, _) => Verbosity::Quiet,
+            (false, false) => Verbosity::Normal,
+            (false, true) => Verbosity::Verbose,
+        };
+        let cancel = CancelToken::default();
+        let staging = Staging::new(cancel.clone());
+        handle_interrupt(cancel.clone(), staging.clone());
+        let mut run = RunSettings::with_threads(common.threads.map_or(0, |n| n.get()))?.cancelled_by(cancel);
+        let visible = verbosity > Verbosity::Quiet && std::io::stderr().is_terminal();
+        let bar = visible.then(|| Arc::new(Bar::new()));
+        if let Some(bar) = &bar {
+            run = run.reporting_to(bar.clone());
+        }
+        Ok(Session { started, verbosity, run, max_memory: common.max_memory, staging, bar })
+    }
+
+    /// Runs one phase and measures it, in seconds.
+    pub fn phase<T>(
+        &self,
+        phase: Phase,
+        work: impl FnOnce() -> Result<T, Failure>,
+    ) -> Result<(T, f64), Failure> {
+        let start = Instant::now();
+        let guard = self.run.phase(phase, 0);
+        let value = work()?;
+        drop(guard);
+        self.run.check()?;
+        Ok((value, start.elapsed().as_secs_f64()))
+    }
+
+    /// A warning on stderr.
+    pub fn warn(&self, sentence: &str) {
+        if self.verbosity > Verbosity::Quiet {
+            self.above_bar(|| say("warning", sentence));
+        }
+    }
+
+    /// A result on stdout.
+    pub fn tell(&self, text: &str) {
+        if self.verbosity > Verbosity::Quiet {
+            self.above_bar(|| print(text));
+        }
+    }
+
+    /// Seconds since the command line was parsed.
+    pub fn wall(&self) -> f64 {
+        self.started.elapsed().as_secs_f64()
+    }
+
+    fn above_bar(&self, write: impl FnOnce()) {
+        match &self.bar {
+            Some(bar) => bar.suspend(write),
+            None => write(),
+        }
+    }
+}
+
+/// Text on stdout, with a line end.
+pub(super) fn print(text: &str) {
+    // A reader that went away (`| head`) is no error of ours.
+    let _ = writeln!(std::io::stdout(), "{}", text.trim_end());
+}
+
+/// On Ctrl-C or the signal to terminate: cancels, gives the command a moment to end by itself, and ends
+/// the program if it does not.
+fn handle_interrupt(cancel: CancelToken, staging: Staging) {
+    // Reading a file or building a hierarchy cannot be cancelled. The promise is to stop within 200 ms.
+    const GRACE: Duration = Duration::from_millis(120);
+    let handler = move || {
+        cancel.cancel();
+        std::thread::sleep(GRACE);
+        // Waits for outputs that are just being put in place, and removes incomplete ones.
+        staging.discard();
+        if std::io::stderr().is_terminal() {
+            // The bar may still be there: to the line's beginning, and clear it.
+            let _ = write!(std::io::stderr(), "\r\x1b[2K");
+        }
+        say_interrupted();
+        std::process::exit(i32::from(Exit::Interrupted as u8));
+    };
+    if let Err(error) = ctrlc::set_handler(handler) {
+        say("warning", &format!("Ctrl-C will leave temporary files behind: {error}"));
+    }
+}
