@@ -9,8 +9,11 @@ fn main() {
         match f.first() {
             Some(&"v") => mesh.vertices.push([1, 2, 3].map(|i| f[i].parse().unwrap())),
             Some(&"f") => {
-                let ix: Vec<u32> = f[1..].iter().map(|s| s.split('/').next().unwrap().parse::<u32>().unwrap() - 1).collect();
-                for i in 1..ix.len() - 1 { mesh.triangles.push([ix[0], ix[i], ix[i + 1]]); }
+                let ix: Vec<u32> =
+                    f[1..].iter().map(|s| s.split('/').next().unwrap().parse::<u32>().unwrap() - 1).collect();
+                for i in 1..ix.len() - 1 {
+                    mesh.triangles.push([ix[0], ix[i], ix[i + 1]]);
+                }
             }
             _ => {}
         }
@@ -32,16 +35,31 @@ fn main() {
     let t = Instant::now();
     let settings = BandSettings { lattice: Lattice { voxel: h }, r, half_width: w };
     let mut all = LeafBatch::default();
-    let s = build(&d, &settings, &run, |mut b| { all.append(&mut b); Ok::<_, Cancelled>(()) }).unwrap();
+    let s = build(&d, &settings, &run, |mut b| {
+        all.append(&mut b);
+        Ok::<_, Cancelled>(())
+    })
+    .unwrap();
     println!("band {:?} leaves {} {:?}", t.elapsed(), all.len(), s);
     let t = Instant::now();
     let inside: Vec<LeafMask> = all.values.chunks(512).map(inside_mask).collect();
     let tiles = &all.inside_blocks;
     let mut set = std::collections::HashSet::new();
-    for &(o, side) in tiles { for x in 0..side / 8 { for y in 0..side / 8 { for z in 0..side / 8 { set.insert(o + Ijk::new(8 * x, 8 * y, 8 * z)); } } } }
+    for &(o, side) in tiles {
+        for x in 0..side / 8 {
+            for y in 0..side / 8 {
+                for z in 0..side / 8 {
+                    set.insert(o + Ijk::new(8 * x, 8 * y, 8 * z));
+                }
+            }
+        }
+    }
     println!("tiles {:?}", t.elapsed());
     let t = Instant::now();
-    let signs = SignField::new(&all.origins, &inside, |m| Ok::<_, Cancelled>(m.iter().map(|o| set.contains(o)).collect())).unwrap();
+    let signs = SignField::new(&all.origins, &inside, |m| {
+        Ok::<_, Cancelled>(m.iter().map(|o| set.contains(o)).collect())
+    })
+    .unwrap();
     println!("signs {:?} {}", t.elapsed(), signs.len());
     let t = Instant::now();
     let numbers = EdgeNumbers::new(&signs).unwrap();

@@ -104,6 +104,16 @@ impl Lattice {
         self.voxel * f64::from(i)
     }
 
+    /// The value of nodes outside a band of `half_width` voxels, as stored: their product in model units,
+    /// rounded up where rounding to f32 made it smaller, since other programs count the voxels back.
+    pub fn background(&self, half_width: f64) -> f32 {
+        let mut background = (half_width * self.voxel) as f32;
+        while f64::from(background) / self.voxel < half_width {
+            background = background.next_up();
+        }
+        background
+    }
+
     /// World position of node `ijk`.
     pub fn world_from_index(&self, ijk: Ijk) -> [f64; 3] {
         ijk.0.map(|i| self.plane(i))

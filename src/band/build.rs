@@ -21,9 +21,9 @@ pub struct BandSettings {
 }
 
 impl BandSettings {
-    /// The value of nodes outside the band, as stored: half-width times voxel size.
+    /// The value of nodes outside the band, as stored.
     pub fn background(&self) -> f32 {
-        (self.half_width * self.lattice.voxel) as f32
+        self.lattice.background(self.half_width)
     }
 }
 
@@ -60,7 +60,7 @@ pub fn build<E: From<Cancelled> + Send>(
         distance,
         lattice: settings.lattice,
         r: settings.r,
-        half_width: settings.half_width * settings.lattice.voxel,
+        half_width: f64::from(settings.background()),
     };
     let worker = Worker { filter, settings: *settings };
     let phase = run.phase(Phase::Band, boxes.len() as u64);

@@ -24,8 +24,12 @@ pub fn leaves_at_jumps(
         }
     }
     let neighbours: Vec<Ijk> = pairs.iter().map(|&(_, neighbour)| neighbour).collect();
-    let mut origins: Vec<Ijk> =
-        pairs.iter().zip(inside_at(&neighbours)).filter(|(_, inside)| !inside).map(|(&(leaf, _), _)| leaf).collect();
+    let mut origins: Vec<Ijk> = pairs
+        .iter()
+        .zip(inside_at(&neighbours))
+        .filter(|(_, inside)| !inside)
+        .map(|(&(leaf, _), _)| leaf)
+        .collect();
     origins.sort_unstable();
     origins.dedup();
     let count = origins.len();

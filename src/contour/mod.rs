@@ -1,1 +1,135 @@
-//! contour (being written)
+//! Dual contouring without intersections ([LW11] section VI, extended).
+//!
+//! Input is a sign for every node and a crossing for every grid edge with a sign change. Whatever they
+//! are, the output is
+//!
+//! * closed and consistently oriented, counter-clockwise seen from outside,
+//! * 2-manifold: two triangles at every edge, one fan at every vertex,
+//! * free of intersecting, touching and degenerate triangles,
+//!
+//! exactly, for the coordinates as they are returned, which are those that a file of the chosen
+//! [`Precision`] can hold. It is void when the mesh is moved, scaled or rounded further afterwards.
+//! Creases and corners of the surface come out where the minimiser of the error function lies in its cell.
+//!
+//! The way, a file for each step:
+//!
+//! | file | what |
+//! |---|---|
+//! | `grid` | the lattice rounded to the output's precision, before any decision |
+//! | `cell`, `sheets` | the cube, and its 256 masks: pairs on faces, sheets, caps and their walls |
+//! | `numbering` | active cells and their vertices, numbered by ranks in bit masks |
+//! | `cells`, `qef`, `region`, `vertex` | the vertex of each sheet within its cell and its walls |
+//! | `face_vertex` | vertices on faces where a connection would get in another sheet's way |
+//! | `envelope`, `polygonize` | convex/concave analysis, and the triangles around an edge |
+//!
+//! Why it holds: inside a cell lie the cones from its vertices over the triangles that crossed edges span with
+//! the points where connections pass the cell's faces. On a face these triangles do not overlap, walls
+//! separate the cones of different sheets, and a disc of good triangles stays in its edge's tetrahedra.
+
+mod cell;
+mod cells;
+mod envelope;
+mod face_vertex;
+mod grid;
+mod numbering;
+mod output;
+mod polygonize;
+mod qef;
+mod region;
+mod sheets;
+mod statistics;
+mod vertex;
+
+pub use grid::Precision;
+pub use statistics::ContourStatistics;
+
+use crate::band::{Lattice, SignField};
+use crate::edge::Crossings;
+use crate::mesh::TriMesh;
+use crate::run::{Cancelled, Phase, RunSettings};
+use cells::Cells;
+use grid::Grid;
+use numbering::CellNumbers;
+
+/// Settings of [`contour`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ContourSettings {
+    /// The coordinates of the result.
+    pub precision: Precision,
+}
+
+/// Why [`contour`] failed.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ContourError {
+    /// The run was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The result has too many vertices.
+    #[error(transparent)]
+    TooManyVertices(#[from] TooManyVertices),
+    /// The coordinates of the chosen precision are too coarse for the voxel size.
+    #[error(
+        "coordinates of size {far} are too coarse in {precision:?} for voxels of size {voxel}; \
+         choose 64-bit coordinates, larger voxels, or move the model to the origin"
+    )]
+    TooFarFromOrigin {
+        /// The largest coordinate, in model units.
+        far: f64,
+        /// The voxel size, in model units.
+        voxel: f64,
+        /// The precision that was asked for.
+        precision: Precision,
+    },
+}
+
+/// The mesh would have more than 2^32 - 1 vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the result has more than 4294967295 vertices; choose a larger voxel size")]
+pub struct TooManyVertices;
+
+/// The surface between the inside and the outside nodes of `signs`, through `crossings`.
+///
+/// Vertices come in the order cell vertices (by leaf, cell, sheet), face vertices, edge vertices; triangles
+/// in the order of their grid edges. The result is the same for every number of threads.
+///
+/// # Errors
+/// When the run is cancelled, the result is too large, or the lattice reaches too far from the origin for
+/// the precision.
+///
+/// # Panics
+/// When `crossings` does not belong to `signs`.
+pub fn contour(
+    signs: &SignField,
+    crossings: &Crossings,
+    lattice: Lattice,
+    settings: &ContourSettings,
+    run: &RunSettings,
+) -> Result<(TriMesh, ContourStatistics), ContourError> {
+    assert_eq!(crossings.samples.len(), crossings.numbers.len(), "one sample for each crossing");
+    let grid = Grid::new(lattice, settings.precision, reach(signs, crossings))?;
+    let phase = run.phase(Phase::Contour, 2 * signs.len() as u64);
+    run.install(|| {
+        let numbers = CellNumbers::new(signs, run)?;
+        let (cells, mut vertices, mut statistics) = Cells::place(signs, crossings, grid, &numbers, &phase)?;
+        let mut faces = face_vertex::face_vertices(&cells, &vertices, run)?;
+        vertices.append(&mut faces.positions);
+        statistics.face_vertices = vertices.len() as u64 - u64::from(numbers.vertices());
+        let (mesh, polygons) = output::triangulate(&cells, &faces, vertices, &phase)?;
+        statistics += polygons;
+        statistics.vertices = mesh.vertices.len() as u64;
+        statistics.triangles = mesh.triangles.len() as u64;
+        Ok((mesh, statistics))
+    })
+}
+
+/// The largest index, in size, of a corner of an active cell.
+fn reach(signs: &SignField, crossings: &Crossings) -> u32 {
+    let crossed = signs.leaves().filter(|&leaf| !crossings.numbers.range(leaf).is_empty());
+    let sizes = crossed.flat_map(|leaf| signs.origin(leaf).0.map(i32::unsigned_abs));
+    // A leaf has 8 nodes, and cells reach one node further.
+    sizes.max().unwrap_or(0).saturating_add(9)
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

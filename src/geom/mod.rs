@@ -1,6 +1,7 @@
-//! Geometry below everything else: points, triangles, swept spheres, roots, small matrices.
+//! Geometry below everything else: points, triangles, swept spheres, roots, predicates, small matrices.
 
 pub mod aabb;
+pub mod predicates;
 pub mod roots;
 pub mod swept;
 pub mod sym3;

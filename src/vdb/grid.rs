@@ -57,7 +57,7 @@ impl SurfaceGrid {
         if !(half_width >= 1.0 && half_width.is_finite()) {
             return wrong("the half width must be at least 1");
         }
-        let background = background(voxel, half_width);
+        let background = lattice.background(half_width);
         if !background.is_normal() {
             return wrong("the background value is beyond the range of 32-bit floats");
         }
@@ -310,16 +310,6 @@ fn transform_scale(voxel: f64) -> f64 {
     if voxel < SMALLEST_VOXEL { 1.0 } else { voxel }
 }
 
-/// half_width * voxel as the smallest f32 that is not below it, also after division by the voxel size,
-/// which is what checkLevelSet looks at.
-fn background(voxel: f64, half_width: f64) -> f32 {
-    let mut background = (half_width * voxel) as f32;
-    while f64::from(background) / voxel < half_width {
-        background = background.next_up();
-    }
-    background
-}
-
 /// The result of a call that walks the tree: it fails only where memory runs out, and Rust's own
 /// allocations would end the program as well.
 fn in_memory<T>(result: Result<T, cxx::Exception>) -> T {
@@ -342,7 +332,7 @@ mod tests {
         for n in 1..10_000 {
             let voxel = 1.0 / f64::from(n);
             for half_width in [1.0, 1.5, 3.0, 4.0] {
-                let b = background(voxel, half_width);
+                let b = Lattice { voxel }.background(half_width);
                 assert!(f64::from(b) / voxel >= half_width, "{voxel} {half_width}");
                 assert!(f64::from(b.next_down().next_down()) < half_width * voxel, "{voxel} {half_width}");
             }

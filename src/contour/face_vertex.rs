@@ -1,0 +1,177 @@
+//! Vertices on faces between cells, where the straight connection of two cell vertices would leave the
+//! part of the face that belongs to their pair of crossings.
+//!
+//! The segment between the vertices of two neighbouring cells meets their common face. Where the contour
+//! passes a corner of the face beside another sheet (the face is ambiguous, or the pair belongs to a cap in one
+//! of the cells), it must do so between the corner and the face's diagonal:
+//!
+//! ```text
+//!    n2 ------- +         c:      the corner that the pair goes around
+//!     | \   q   |         n1, n2: its neighbours on the face
+//!     |p  \     |         p:      the segment passes in the corner's triangle: nothing to do
+//!     |     \   |         q:      it does not: the pair gets a vertex at its middle
+//!     c ------ n1
+//! ```
+
+use super::cell::{Corner, Edge, Face};
+use super::cells::{Cells, split};
+use super::grid::Grid;
+use super::numbering::{CellId, CellNumbers, locate};
+use super::sheets::{Case, Pair};
+use super::{ContourError, TooManyVertices};
+use crate::band::{Axis, Ijk, LeafId, SignField};
+use crate::edge::{Crossings, bits};
+use crate::geom::predicates::orient3d;
+use crate::run::{Cancelled, RunSettings};
+use rayon::prelude::*;
+
+/// Which of the upper faces of an active cell have vertices.
+#[derive(Clone, Copy, Debug, Default)]
+struct Marks {
+    /// Face vertices of the leaf's cells before this one: at most 6 x 512.
+    before: u16,
+    /// Bit 2 axis + pair.
+    pairs: u8,
+}
+
+/// The face vertices of all cells, and their numbers.
+#[derive(Debug)]
+pub struct FaceVertices {
+    marks: Vec<Marks>,
+    /// Per leaf the number of its first face vertex.
+    first: Vec<u32>,
+    /// The positions, in the order leaf, cell, axis, pair.
+    pub positions: Vec<[f64; 3]>,
+}
+
+impl FaceVertices {
+    /// The number of the face vertex between the cell `cell` of `leaf`, with case `case`, and the next cell
+    /// along `axis`, on the pair with the crossing of `edge`, as an edge of `cell`; `None` if there is none.
+    #[inline]
+    pub fn get(&self, leaf: LeafId, cell: CellId, case: &Case, axis: Axis, edge: Edge) -> Option<u32> {
+        let marks = self.marks[cell.0 as usize];
+        if marks.pairs >> (2 * axis as u8) & 3 == 0 {
+            return None;
+        }
+        let bit = 2 * axis as usize + case.pair_of(Face::upper(axis), edge)?;
+        if marks.pairs >> bit & 1 == 0 {
+            return None;
+        }
+        let below = (marks.pairs & ((1 << bit) - 1)).count_ones();
+        Some(self.first[leaf.0 as usize] + u32::from(marks.before) + below)
+    }
+}
+
+/// Finds the pairs that need a face vertex. Face vertices are numbered on from the cell vertices `vertices`.
+///
+/// # Errors
+/// More than 2^32 - 1 vertices, or cancellation.
+pub fn face_vertices(
+    cells: &Cells<'_>,
+    vertices: &[[f64; 3]],
+    run: &RunSettings,
+) -> Result<FaceVertices, ContourError> {
+    let (signs, numbers) = (cells.signs, cells.numbers);
+    let leaves: Vec<LeafId> = signs.leaves().collect();
+    let mut marks = vec![Marks::default(); numbers.len()];
+    let slices = split(&mut marks, leaves.iter().map(|&leaf| numbers.range(leaf).len()));
+    let per_leaf: Vec<Vec<[f64; 3]>> = leaves
+        .par_iter()
+        .zip(slices)
+        .with_min_len(16)
+        .map(|(&leaf, marks)| {
+            run.check()?;
+            Ok(in_leaf(cells, vertices, leaf, marks))
+        })
+        .collect::<Result<_, Cancelled>>()?;
+    let mut next = vertices.len() as u64;
+    let mut first = Vec::with_capacity(per_leaf.len());
+    for positions in &per_leaf {
+        first.push(u32::try_from(next).map_err(|_| TooManyVertices)?);
+        next += positions.len() as u64;
+    }
+    u32::try_from(next).map_err(|_| TooManyVertices)?;
+    Ok(FaceVertices { marks, first, positions: per_leaf.concat() })
+}
+
+/// The face vertices on the upper faces of the cells of one leaf.
+fn in_leaf(cells: &Cells<'_>, vertices: &[[f64; 3]], leaf: LeafId, marks: &mut [Marks]) -> Vec<[f64; 3]> {
+    let (signs, numbers): (&SignField, &CellNumbers) = (cells.signs, cells.numbers);
+    let mut positions = Vec::new();
+    for (marks, number) in marks.iter_mut().zip(bits(numbers.active(leaf))) {
+        marks.before = positions.len() as u16;
+        let local = Ijk::in_leaf(Ijk::default(), number);
+        let cell = numbers.id(leaf, number);
+        let case = cells.case(cell);
+        for axis in Axis::ALL {
+            let face = Face::upper(axis);
+            if case.pairs(face).is_empty() {
+                continue;
+            }
+            let (_, next) = numbers.locate(signs, leaf, local.next(axis).0);
+            let next_case = cells.case(next);
+            let ambiguous = case.is_ambiguous(face);
+            if !(ambiguous || case.has_several_sheets() || next_case.has_several_sheets()) {
+                continue;
+            }
+            for (n, pair) in case.pairs(face).iter().enumerate() {
+                let Some(corner) = pair.around else { continue };
+                let edge = pair.edges[0];
+                let next_edge = across(edge, axis);
+                if !(ambiguous || case.is_walled_cap(edge) || next_case.is_walled_cap(next_edge)) {
+                    continue;
+                }
+                let ends = [
+                    vertices[cells.vertex(cell, edge) as usize],
+                    vertices[cells.vertex(next, next_edge) as usize],
+                ];
+                let ijk = signs.origin(leaf) + local;
+                if !passes_corner(&cells.grid, ijk, axis, corner, ends) {
+                    marks.pairs |= 1 << (2 * axis as usize + n);
+                    positions.push(middle(&cells.grid, cells.crossings, signs, leaf, local, axis, pair));
+                }
+            }
+        }
+    }
+    positions
+}
+
+/// The edge of the next cell along `axis` that coincides with `edge` on the upper face across `axis`.
+fn across(edge: Edge, axis: Axis) -> Edge {
+    edge.low().across(axis).edge(edge.axis())
+}
+
+/// Whether the segment between the vertices of `cell` and of the next cell along `axis` passes their
+/// common face strictly on the side of `corner` of the line through the corner's neighbours.
+fn passes_corner(grid: &Grid, cell: Ijk, axis: Axis, corner: Corner, ends: [[f64; 3]; 2]) -> bool {
+    let (u, v) = axis.others();
+    let node = |c: Corner| grid.node(cell + Ijk(c.offset()));
+    let side = orient3d(ends[0], ends[1], node(corner.across(u)), node(corner.across(v)));
+    // For the corner at (0, 0) the segment, the line and the corner follow the right hand; each mirroring
+    // turns the sign around.
+    if corner.side(u) == corner.side(v) { side > 0.0 } else { side < 0.0 }
+}
+
+/// The middle of a pair on the upper face across `axis` of the cell `local`, exactly on the rounded face.
+fn middle(
+    grid: &Grid,
+    crossings: &Crossings,
+    signs: &SignField,
+    leaf: LeafId,
+    local: Ijk,
+    axis: Axis,
+    pair: &Pair,
+) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for edge in pair.edges {
+        let low = Ijk(edge.low().offset());
+        let (at, number) = locate(signs, leaf, (local + low).0);
+        let id = crossings.numbers.get(at, edge.axis(), number).expect("a pair joins crossed edges");
+        let mut point = low.0.map(f64::from);
+        point[edge.axis() as usize] = grid.clamp(crossings.sample(id).t);
+        sum = std::array::from_fn(|i| sum[i] + point[i]);
+    }
+    let mut point = sum.map(|x| 0.5 * x);
+    point[axis as usize] = 1.0;
+    grid.between_walls(signs.origin(leaf) + local, point)
+}

@@ -1,0 +1,170 @@
+//! The lattice as it is written: node planes and vertices rounded to the output's precision *before*
+//! anything is decided on them. Rounding afterwards would void every decision.
+
+use super::ContourError;
+use crate::band::{Ijk, Lattice};
+
+/// The coordinates that the contour is decided on, and must be written with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// Every coordinate is a 32-bit float: right for binary STL and PLY.
+    #[default]
+    F32,
+    /// 64-bit floats: right for text formats and `--f64` PLY.
+    F64,
+}
+
+impl Precision {
+    /// The nearest coordinate of this precision.
+    #[inline]
+    pub fn round(self, x: f64) -> f64 {
+        match self {
+            Precision::F32 => f64::from(x as f32),
+            Precision::F64 => x,
+        }
+    }
+
+    /// The distance from |x| to the next larger coordinate; infinite or not a number when x is out of range.
+    pub fn ulp(self, x: f64) -> f64 {
+        match self {
+            Precision::F32 => {
+                let x = (x as f32).abs();
+                f64::from(x.next_up()) - f64::from(x)
+            }
+            Precision::F64 => x.abs().next_up() - x.abs(),
+        }
+    }
+}
+
+/// How far vertices stay from the walls of their cell, in voxels, as long as rounding allows. Smaller values
+/// let triangles degenerate to needles of that width; larger ones blunt features that lie close to a cell's
+/// wall by up to as much.
+const MARGIN: f64 = 1e-3;
+
+/// Margins above this are refused: a cell then has fewer than 16 representable coordinates along its
+/// side, vertices are displaced visibly, and the midpoint of a sheet is no longer sure to lie within its
+/// walls after rounding.
+const MAX_MARGIN: f64 = 0.125;
+
+/// The rounded lattice.
+#[derive(Clone, Copy, Debug)]
+pub struct Grid {
+    lattice: Lattice,
+    precision: Precision,
+    margin: f64,
+}
+
+impl Grid {
+    /// The grid on `lattice` for cells whose corners have indices of at most `reach` in size.
+    ///
+    /// # Errors
+    /// When the coordinates there are too coarse for the voxel size.
+    pub fn new(lattice: Lattice, precision: Precision, reach: u32) -> Result<Grid, ContourError> {
+        let far = lattice.voxel * f64::from(reach);
+        // Two units in the last place: node planes and vertices are off by up to half a unit each. Half
+        // a unit in all is the limit below which lattices fail.
+        let least = 2.0 * precision.ulp(far) / lattice.voxel;
+        // False for what is not a number, too.
+        if least <= MAX_MARGIN && lattice.voxel > 0.0 {
+            Ok(Grid { lattice, precision, margin: MARGIN.max(least) })
+        } else {
+            Err(ContourError::TooFarFromOrigin { far, voxel: lattice.voxel, precision })
+        }
+    }
+
+    /// The voxel size in model units.
+    #[inline]
+    pub fn voxel(&self) -> f64 {
+        self.lattice.voxel
+    }
+
+    /// The least distance of a vertex from its cell's walls, in voxels.
+    #[inline]
+    pub fn margin(&self) -> f64 {
+        self.margin
+    }
+
+    /// The rounded coordinate of node plane `i`.
+    #[inline]
+    pub fn plane(&self, i: i32) -> f64 {
+        self.precision.round(self.lattice.plane(i))
+    }
+
+    /// The rounded position of a node.
+    #[inline]
+    pub fn node(&self, ijk: Ijk) -> [f64; 3] {
+        ijk.0.map(|i| self.plane(i))
+    }
+
+    /// The rounded world position of the point `local` of a cell, in voxels from its lowest corner on the
+    /// lattice before rounding.
+    #[inline]
+    pub fn round_ideal(&self, cell: Ijk, local: [f64; 3]) -> [f64; 3] {
+        self.round(self.ideal(cell, local))
+    }
+
+    /// The world position of the point `local` of a cell, unrounded.
+    #[inline]
+    pub fn ideal(&self, cell: Ijk, local: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|a| self.voxel() * (f64::from(cell.0[a]) + local[a]))
+    }
+
+    /// The rounded world position of the point of a cell whose coordinates between its rounded walls are
+    /// `local`, 0 to 1 each.
+    #[inline]
+    pub fn between_walls(&self, cell: Ijk, local: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|a| {
+            let (low, high) = (self.plane(cell.0[a]), self.plane(cell.0[a] + 1));
+            if local[a] == 1.0 { high } else { self.precision.round(low + local[a] * (high - low)) }
+        })
+    }
+
+    /// The inverse of [`between_walls`](Self::between_walls), exact to a few units in the last place of the
+    /// *result*, however far from the origin the cell is.
+    #[inline]
+    pub fn local(&self, cell: Ijk, position: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|a| {
+            let (low, high) = (self.plane(cell.0[a]), self.plane(cell.0[a] + 1));
+            (position[a] - low) / (high - low)
+        })
+    }
+
+    /// Rounds a world position.
+    #[inline]
+    pub fn round(&self, position: [f64; 3]) -> [f64; 3] {
+        position.map(|x| self.precision.round(x))
+    }
+
+    /// A position along an edge, kept `margin` away from the ends; what is not a number becomes the lower end.
+    #[inline]
+    pub fn clamp(&self, t: f64) -> f64 {
+        if t >= self.margin { t.min(1.0 - self.margin) } else { self.margin }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn margins_grow_with_the_distance() {
+        let lattice = Lattice { voxel: 0.1 };
+        assert_eq!(Grid::new(lattice, Precision::F32, 100).unwrap().margin(), MARGIN);
+        let far = Grid::new(lattice, Precision::F32, 600_000).unwrap();
+        assert!(far.margin() > 0.05 && far.margin() < MAX_MARGIN);
+        assert!(Grid::new(lattice, Precision::F32, 1_000_000).is_err());
+        assert_eq!(Grid::new(lattice, Precision::F64, 10_000_000).unwrap().margin(), MARGIN);
+        for voxel in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-60, 1e60] {
+            assert!(Grid::new(Lattice { voxel }, Precision::F32, 10).is_err(), "{voxel}");
+        }
+    }
+
+    #[test]
+    fn local_coordinates_go_back_and_forth() {
+        let grid = Grid::new(Lattice { voxel: 0.1 }, Precision::F32, 20_000).unwrap();
+        let cell = Ijk::new(20_000 - 1, -7, 0);
+        let local = grid.local(cell, grid.between_walls(cell, [0.0, 1.0, 0.5]));
+        assert_eq!(local[..2], [0.0, 1.0]);
+        assert!((local[2] - 0.5).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,192 @@
+//! Which cells are active, and their numbers: bit masks and ranks per leaf, no hash map.
+//!
+//! A cell belongs to the leaf of its lowest corner and has that corner's number in it. It is active when
+//! its corners have both signs.
+
+use super::sheets::{CaseId, CaseTable, FaceChoice};
+use super::{ContourError, TooManyVertices};
+use crate::band::{LeafId, LeafMask, SignField};
+use crate::edge::bits;
+use crate::run::RunSettings;
+use rayon::prelude::*;
+
+/// Signs of the corners of a leaf's cells: word `x` of `planes[x][dy + 2 dz]` holds for each (y, z) the
+/// sign of the node (x, y + dy, z + dz), with x in 0..=8.
+pub struct CornerSigns {
+    planes: [[u64; 4]; 9],
+}
+
+/// The bits with z = 0 in each row of eight.
+const Z_FIRST: u64 = 0x0101_0101_0101_0101;
+/// The bits with z = 7 in each row of eight.
+const Z_LAST: u64 = Z_FIRST << 7;
+
+impl CornerSigns {
+    /// The corner signs of `leaf`; `None` when its cells are all of one sign. A neighbour that the field
+    /// lacks counts as a continuation of a uniform leaf: the field has all neighbours of others.
+    pub fn new(signs: &SignField, leaf: LeafId) -> Option<CornerSigns> {
+        let own = signs.inside(leaf);
+        let uniform = [own[0]; 8];
+        let at = |delta| signs.neighbour(leaf, delta).map_or(&uniform, |n| signs.inside(n));
+        let leaves =
+            [[[0, 0, 0], [0, 1, 0], [0, 0, 1], [0, 1, 1]], [[1, 0, 0], [1, 1, 0], [1, 0, 1], [1, 1, 1]]]
+                .map(|side| side.map(at));
+        let all = |word: u64| leaves.iter().flatten().all(|mask| **mask == [word; 8]);
+        if all(0) || all(!0) {
+            return None;
+        }
+        let planes = std::array::from_fn(|x| {
+            let [a, y, z, yz] = leaves[x / 8].map(|mask| mask[x % 8]);
+            let next_z = |word: u64, after: u64| ((word >> 1) & !Z_LAST) | ((after & Z_FIRST) << 7);
+            let next_y = |word: u64, after: u64| (word >> 8) | (after << 56);
+            [a, next_y(a, y), next_z(a, z), next_y(next_z(a, z), next_z(y, yz))]
+        });
+        Some(CornerSigns { planes })
+    }
+
+    /// The active cells.
+    pub fn active(&self) -> LeafMask {
+        std::array::from_fn(|x| {
+            let corners = self.planes[x..x + 2].as_flattened();
+            corners.iter().fold(0, |any, w| any | w) & !corners.iter().fold(!0, |all, w| all & w)
+        })
+    }
+
+    /// The mask of inside corners of the cell with `number`, bit dx + 2 dy + 4 dz.
+    #[inline]
+    pub fn mask(&self, number: usize) -> u8 {
+        let (x, bit) = (number >> 6, number & 63);
+        let pick = |plane: usize, row: usize| (self.planes[plane][row] >> bit & 1) as u8;
+        (0..4).fold(0, |mask, row| mask | pick(x, row) << (2 * row) | pick(x + 1, row) << (2 * row + 1))
+    }
+}
+
+/// The number of an active cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CellId(pub u32);
+
+#[derive(Clone, Copy, Debug)]
+struct LeafCells {
+    active: LeafMask,
+    /// Active cells of the leaf before word x.
+    before: [u16; 8],
+    /// The number of the first active cell.
+    first_cell: u32,
+    /// The number of the first cell vertex.
+    first_vertex: u32,
+}
+
+/// The numbering of active cells and of their vertices.
+#[derive(Debug)]
+pub struct CellNumbers {
+    leaves: Vec<LeafCells>,
+    cells: u32,
+    vertices: u32,
+}
+
+impl CellNumbers {
+    /// Numbers the active cells of `signs`, and their sheets.
+    ///
+    /// # Errors
+    /// When there are more than 2^32 - 1 sheets, or the run is cancelled.
+    pub fn new(signs: &SignField, run: &RunSettings) -> Result<CellNumbers, ContourError> {
+        let table = CaseTable::get();
+        let ids: Vec<LeafId> = signs.leaves().collect();
+        let mut leaves: Vec<LeafCells> = ids
+            .into_par_iter()
+            .with_min_len(16)
+            .map(|leaf| {
+                run.check()?;
+                let mut cells = LeafCells { active: [0; 8], before: [0; 8], first_cell: 0, first_vertex: 0 };
+                if let Some(corners) = CornerSigns::new(signs, leaf) {
+                    cells.active = corners.active();
+                    let mut count = 0;
+                    for (word, before) in cells.active.iter().zip(&mut cells.before) {
+                        *before = count;
+                        count += word.count_ones() as u16;
+                    }
+                    // Counts for now; the prefix sums follow.
+                    cells.first_cell = u32::from(count);
+                    cells.first_vertex = bits(&cells.active)
+                        .map(|n| table.case(constant_case(table, corners.mask(n))).sheets().len() as u32)
+                        .sum();
+                }
+                Ok(cells)
+            })
+            .collect::<Result<_, ContourError>>()?;
+        let (mut cells, mut vertices) = (0u32, 0u32);
+        for leaf in &mut leaves {
+            let next = (cells.checked_add(leaf.first_cell), vertices.checked_add(leaf.first_vertex));
+            (leaf.first_cell, leaf.first_vertex) = (cells, vertices);
+            let (Some(next_cells), Some(next_vertices)) = next else { return Err(TooManyVertices.into()) };
+            (cells, vertices) = (next_cells, next_vertices);
+        }
+        Ok(CellNumbers { leaves, cells, vertices })
+    }
+
+    /// The number of active cells.
+    pub fn len(&self) -> usize {
+        self.cells as usize
+    }
+
+    /// The number of cell vertices.
+    pub fn vertices(&self) -> u32 {
+        self.vertices
+    }
+
+    /// The active cells of `leaf`.
+    pub fn active(&self, leaf: LeafId) -> &LeafMask {
+        &self.leaves[leaf.0 as usize].active
+    }
+
+    /// The numbers of the active cells of `leaf`, a contiguous range.
+    pub fn range(&self, leaf: LeafId) -> std::ops::Range<usize> {
+        let end = self.leaves.get(leaf.0 as usize + 1).map_or(self.cells, |next| next.first_cell);
+        self.leaves[leaf.0 as usize].first_cell as usize..end as usize
+    }
+
+    /// The numbers of the cell vertices of `leaf`, a contiguous range.
+    pub fn vertex_range(&self, leaf: LeafId) -> std::ops::Range<usize> {
+        let end = self.leaves.get(leaf.0 as usize + 1).map_or(self.vertices, |next| next.first_vertex);
+        self.leaves[leaf.0 as usize].first_vertex as usize..end as usize
+    }
+
+    /// The number of the active cell with `number` in `leaf`.
+    ///
+    /// # Panics
+    /// When that cell is not active.
+    #[inline]
+    pub fn id(&self, leaf: LeafId, number: usize) -> CellId {
+        let cells = &self.leaves[leaf.0 as usize];
+        let (word, bit) = (number >> 6, number & 63);
+        assert!(cells.active[word] >> bit & 1 == 1, "a cell around a crossed edge is active");
+        let below = (cells.active[word] & ((1 << bit) - 1)).count_ones();
+        CellId(cells.first_cell + u32::from(cells.before[word]) + below)
+    }
+
+    /// The number of the active cell at `local`, in nodes from the origin of `leaf`, and the leaf that
+    /// the cell belongs to.
+    #[inline]
+    pub fn locate(&self, signs: &SignField, leaf: LeafId, local: [i32; 3]) -> (LeafId, CellId) {
+        let (leaf, number) = locate(signs, leaf, local);
+        (leaf, self.id(leaf, number))
+    }
+}
+
+/// The leaf and number of the node or cell `local`, given in nodes from the origin of `leaf`.
+///
+/// # Panics
+/// When the field does not contain it.
+#[inline]
+pub fn locate(signs: &SignField, leaf: LeafId, local: [i32; 3]) -> (LeafId, usize) {
+    if (local[0] | local[1] | local[2]) & !7 == 0 {
+        return (leaf, (64 * local[0] + 8 * local[1] + local[2]) as usize);
+    }
+    signs.locate(leaf, local).expect("the cells around a sign change lie in the sign field")
+}
+
+/// The case of a mask under the rule for ambiguous faces that is in use: a constant one.
+#[inline]
+pub fn constant_case(table: &CaseTable, mask: u8) -> CaseId {
+    table.id(mask, FaceChoice::INSIDE_APART)
+}

@@ -1,0 +1,168 @@
+//! The polygons around all crossed edges, cut into triangles and collected to a mesh.
+
+use super::cell::Edge;
+use super::cells::{Cells, split};
+use super::envelope::Envelope;
+use super::face_vertex::FaceVertices;
+use super::polygonize::{Cut, EDGE_VERTEX, Polygon, PolygonCorner, Tangent, polygonize};
+use super::{ContourError, ContourStatistics, TooManyVertices};
+use crate::band::{Axis, Ijk, LeafId};
+use crate::edge::EdgeId;
+use crate::mesh::TriMesh;
+use crate::run::{Cancelled, PhaseGuard};
+use rayon::prelude::*;
+
+/// The triangles around the crossed edges that start in one leaf.
+#[derive(Debug, Default)]
+struct LeafOutput {
+    /// Vertex numbers; from the number of cell and face vertices on, they count the leaf's edge vertices.
+    triangles: Vec<[u32; 3]>,
+    edge_vertices: Vec<[f64; 3]>,
+    /// Polygons.
+    quads: u64,
+}
+
+/// The mesh over the cell and face vertices `vertices`, to which edge vertices are added.
+///
+/// # Errors
+/// More than 2^32 - 1 vertices, or cancellation.
+pub fn triangulate(
+    cells: &Cells<'_>,
+    faces: &FaceVertices,
+    mut vertices: Vec<[f64; 3]>,
+    phase: &PhaseGuard<'_>,
+) -> Result<(TriMesh, ContourStatistics), ContourError> {
+    let leaves: Vec<LeafId> = cells.signs.leaves().collect();
+    let outputs: Vec<LeafOutput> = leaves
+        .par_iter()
+        .with_min_len(16)
+        .map(|&leaf| {
+            phase.advance(1)?;
+            Ok(in_leaf(cells, faces, &vertices, leaf))
+        })
+        .collect::<Result<_, Cancelled>>()?;
+
+    let count: usize = outputs.iter().map(|o| o.triangles.len()).sum();
+    let hubs: usize = outputs.iter().map(|o| o.edge_vertices.len()).sum();
+    let quads = outputs.iter().map(|o| o.quads).sum::<u64>();
+    // The number that stands for an edge vertex must stay free.
+    if (vertices.len() + hubs) as u64 >= u64::from(EDGE_VERTEX) {
+        return Err(TooManyVertices.into());
+    }
+    let shared = vertices.len() as u32;
+    vertices.reserve_exact(hubs);
+    let mut firsts = Vec::with_capacity(outputs.len());
+    for output in &outputs {
+        firsts.push(vertices.len() as u32 - shared);
+        vertices.extend_from_slice(&output.edge_vertices);
+    }
+    let mut triangles = vec![[0; 3]; count];
+    let parts = split(&mut triangles, outputs.iter().map(|o| o.triangles.len()));
+    outputs.into_par_iter().zip(firsts).zip(parts).with_min_len(16).for_each(|((output, first), part)| {
+        for (to, from) in part.iter_mut().zip(output.triangles) {
+            *to = from.map(|v| if v < shared { v } else { v + first });
+        }
+    });
+    let statistics = ContourStatistics {
+        quads,
+        diagonal: quads - hubs as u64,
+        split: hubs as u64,
+        ..ContourStatistics::default()
+    };
+    Ok((TriMesh { vertices, triangles }, statistics))
+}
+
+fn in_leaf(cells: &Cells<'_>, faces: &FaceVertices, vertices: &[[f64; 3]], leaf: LeafId) -> LeafOutput {
+    let numbers = &cells.crossings.numbers;
+    let edges = numbers.range(leaf);
+    let mut output = LeafOutput { triangles: Vec::with_capacity(2 * edges.len()), ..LeafOutput::default() };
+    let grid = &cells.grid;
+    let inside = cells.signs.inside(leaf);
+    let origin = cells.signs.origin(leaf);
+    for (id, (axis, number)) in edges.map(EdgeId).zip(numbers.in_leaf(leaf)) {
+        let local = Ijk::in_leaf(Ijk::default(), number);
+        let node = origin + local;
+        let low_is_inside = inside[number >> 6] >> (number & 63) & 1 == 1;
+        let ends = [grid.node(node), grid.node(node.next(axis))];
+        let (outside, envelope) = if low_is_inside {
+            (End::High, Envelope { above: ends[1], below: ends[0] })
+        } else {
+            (End::Low, Envelope { above: ends[0], below: ends[1] })
+        };
+        let polygon = polygon(cells, faces, vertices, leaf, local, axis, outside);
+        let sample = cells.crossings.sample(id);
+        let mut along = [0.0; 3];
+        along[axis as usize] = sample.t;
+        let tangent = Tangent::new(grid.ideal(node, along), sample.normal.map(f64::from), grid.voxel());
+        let first = output.triangles.len();
+        if polygonize(&polygon, &envelope, &tangent, &mut output.triangles) == Cut::Split {
+            let vertex = (vertices.len() + output.edge_vertices.len()) as u32;
+            for corner in output.triangles[first..].as_flattened_mut() {
+                if *corner == EDGE_VERTEX {
+                    *corner = vertex;
+                }
+            }
+            along[axis as usize] = grid.clamp(sample.t);
+            output.edge_vertices.push(grid.between_walls(node, along));
+        }
+        output.quads += 1;
+    }
+    output
+}
+
+/// An end of a grid edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum End {
+    Low,
+    High,
+}
+
+/// The cells around an edge along an axis as offsets (0 or -1) in the other two axes (u, v), counter-clockwise
+/// seen from the upper end.
+const AROUND: [[i32; 2]; 4] = [[0, 0], [-1, 0], [-1, -1], [0, -1]];
+
+/// Between cell i and cell i + 1 around an edge: the lower one of the two, and whether the next one follows
+/// along u (0) or v (1).
+const BETWEEN: [(usize, usize); 4] = [(1, 0), (2, 1), (2, 0), (3, 1)];
+
+/// The polygon around the edge from node `local` of `leaf` along `axis`, counter-clockwise seen from the
+/// end that is outside.
+#[inline]
+fn polygon(
+    cells: &Cells<'_>,
+    faces: &FaceVertices,
+    vertices: &[[f64; 3]],
+    leaf: LeafId,
+    local: Ijk,
+    axis: Axis,
+    outside: End,
+) -> Polygon {
+    let (u, v) = axis.others();
+    let around = AROUND.map(|[du, dv]| {
+        let mut at = local.0;
+        at[u as usize] += du;
+        at[v as usize] += dv;
+        let (leaf, cell) = cells.numbers.locate(cells.signs, leaf, at);
+        (leaf, cell, Edge::new(axis, -du as u8, -dv as u8))
+    });
+    let corner = |vertex: u32| PolygonCorner { vertex, position: vertices[vertex as usize] };
+    let cell_vertex = |i: usize| corner(cells.vertex(around[i].1, around[i].2));
+    let face_vertex = |i: usize| {
+        let (lower, along) = BETWEEN[i];
+        let (leaf, cell, edge) = around[lower];
+        faces.get(leaf, cell, cells.case(cell), [u, v][along], edge).map(corner)
+    };
+    let mut polygon = Polygon::default();
+    for i in 0..4 {
+        let (cell, face) = match outside {
+            End::High => (i, i),
+            // Backwards: 0, 3, 2, 1, with the face between cells i and i + 1 before cell i.
+            End::Low => ((4 - i) % 4, 3 - i),
+        };
+        polygon.push(cell_vertex(cell));
+        if let Some(corner) = face_vertex(face) {
+            polygon.push(corner);
+        }
+    }
+    polygon
+}

@@ -1,0 +1,254 @@
+//! From the polygon around a crossed grid edge to triangles.
+
+use super::envelope::Envelope;
+use super::qef::dot;
+
+/// Four cell vertices, and a face vertex between any two of them.
+const MAX_CORNERS: usize = 8;
+
+/// Diagonals whose distances to the surface differ by less than this, in voxels, are told apart by their
+/// lengths. On flat and gently curved parts the distances are noise of the size of the coordinates'
+/// rounding, and choosing by noise gives ragged meshes; a crease whose diagonals differ by less is not
+/// visible.
+const SAME_DISTANCE: f64 = 1e-4;
+
+/// A corner of a polygon.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PolygonCorner {
+    /// The number of its vertex.
+    pub vertex: u32,
+    /// The vertex's rounded position.
+    pub position: [f64; 3],
+}
+
+/// The polygon around a crossed grid edge, counter-clockwise seen from the edge's outside end.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Polygon {
+    corners: [PolygonCorner; MAX_CORNERS],
+    len: usize,
+}
+
+impl Polygon {
+    /// Adds a corner after the others.
+    #[inline]
+    pub fn push(&mut self, corner: PolygonCorner) {
+        self.corners[self.len] = corner;
+        self.len += 1;
+    }
+
+    /// The corners in order.
+    #[inline]
+    pub fn corners(&self) -> &[PolygonCorner] {
+        &self.corners[..self.len]
+    }
+
+    fn remove(&mut self, at: usize) {
+        self.corners.copy_within(at + 1..self.len, at);
+        self.len -= 1;
+    }
+
+    /// The triangle that cutting off corner `at` makes.
+    #[inline]
+    fn ear(&self, at: usize) -> [PolygonCorner; 3] {
+        let n = self.len;
+        [self.corners[(at + n - 1) % n], self.corners[at], self.corners[(at + 1) % n]]
+    }
+}
+
+/// The surface's tangent plane where it crosses the grid edge.
+#[derive(Clone, Copy, Debug)]
+pub struct Tangent {
+    /// The crossing, as it was given.
+    pub point: [f64; 3],
+    /// The unit normal there.
+    pub normal: [f64; 3],
+    /// Distances closer than this are equal.
+    pub tolerance: f64,
+}
+
+impl Tangent {
+    /// The tangent plane at a crossing, on a lattice with the given voxel size.
+    pub fn new(point: [f64; 3], normal: [f64; 3], voxel: f64) -> Tangent {
+        Tangent { point, normal, tolerance: SAME_DISTANCE * voxel }
+    }
+
+    /// How badly a diagonal fits: its midpoint's distance from the tangent plane. A diagonal along a crease
+    /// lies in the planes on both sides of it; one across a crease cuts through the solid or the air.
+    fn misfit(&self, a: [f64; 3], b: [f64; 3]) -> f64 {
+        let offset = std::array::from_fn(|i| 0.5 * (a[i] + b[i]) - self.point[i]);
+        dot(self.normal, offset).abs()
+    }
+
+    /// Whether the diagonal `second` is better than `first`: closer to the tangent plane, or as close and
+    /// shorter.
+    fn prefers(&self, second: [[f64; 3]; 2], first: [[f64; 3]; 2]) -> bool {
+        let difference = self.misfit(second[0], second[1]) - self.misfit(first[0], first[1]);
+        if difference.abs() > self.tolerance {
+            return difference < 0.0;
+        }
+        length2(second) < length2(first)
+    }
+}
+
+fn length2([a, b]: [[f64; 3]; 2]) -> f64 {
+    let d = std::array::from_fn(|i| b[i] - a[i]);
+    dot(d, d)
+}
+
+/// How a polygon was cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cut {
+    /// Along diagonals only.
+    Diagonals,
+    /// With a vertex on the grid edge, number `u32::MAX` in the triangles, as hub of a fan.
+    Split,
+}
+
+/// The number that stands for the vertex on the grid edge.
+pub const EDGE_VERTEX: u32 = u32::MAX;
+
+/// Cuts `polygon` into good triangles and appends them to `triangles`.
+pub fn polygonize(
+    polygon: &Polygon,
+    envelope: &Envelope,
+    tangent: &Tangent,
+    triangles: &mut Vec<[u32; 3]>,
+) -> Cut {
+    if polygon.len == 4 {
+        return match quad(polygon, envelope, tangent) {
+            Some(cut) => {
+                triangles.extend(cut);
+                Cut::Diagonals
+            }
+            None => fan(polygon, triangles),
+        };
+    }
+    let first = triangles.len();
+    let mut rest = *polygon;
+    while rest.len > 4 {
+        let Some(ear) = best_ear(&rest, envelope, tangent) else { break };
+        triangles.push(rest.ear(ear).map(|c| c.vertex));
+        rest.remove(ear);
+    }
+    if rest.len == 4
+        && let Some(cut) = quad(&rest, envelope, tangent)
+    {
+        triangles.extend(cut);
+        return Cut::Diagonals;
+    }
+    // What is left goes around the edge's own vertex, as long as its sides still turn around the edge.
+    let n = rest.len;
+    let turns = |i: usize| envelope.turns(rest.corners[i].position, rest.corners[(i + 1) % n].position);
+    if (0..n).all(turns) {
+        return fan(&rest, triangles);
+    }
+    triangles.truncate(first);
+    fan(polygon, triangles)
+}
+
+/// The two triangles of the better legal diagonal of a quad; `None` without a legal one.
+#[inline]
+fn quad(polygon: &Polygon, envelope: &Envelope, tangent: &Tangent) -> Option<[[u32; 3]; 2]> {
+    let corner = |i: usize| polygon.corners[i & 3];
+    // The diagonal from corner i to corner i + 2.
+    let diagonal = |i: usize| [corner(i).position, corner(i + 2).position];
+    let first = usize::from(tangent.prefers(diagonal(1), diagonal(0)));
+    [first, first ^ 1].into_iter().find_map(|i| {
+        let halves = [[corner(i), corner(i + 1), corner(i + 2)], [corner(i + 2), corner(i + 3), corner(i)]];
+        let good = halves.iter().all(|[a, b, c]| envelope.is_good(a.position, b.position, c.position));
+        good.then(|| halves.map(|half| half.map(|c| c.vertex)))
+    })
+}
+
+/// The good ear whose diagonal fits the surface best.
+fn best_ear(polygon: &Polygon, envelope: &Envelope, tangent: &Tangent) -> Option<usize> {
+    let mut best: Option<(usize, [[f64; 3]; 2])> = None;
+    for i in 0..polygon.len {
+        let [a, b, c] = polygon.ear(i).map(|c| c.position);
+        if envelope.is_good(a, b, c) && best.is_none_or(|(_, other)| tangent.prefers([a, c], other)) {
+            best = Some((i, [a, c]));
+        }
+    }
+    best.map(|(i, _)| i)
+}
+
+fn fan(polygon: &Polygon, triangles: &mut Vec<[u32; 3]>) -> Cut {
+    let corners = polygon.corners();
+    for (i, corner) in corners.iter().enumerate() {
+        triangles.push([corner.vertex, corners[(i + 1) % corners.len()].vertex, EDGE_VERTEX]);
+    }
+    Cut::Split
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ENVELOPE: Envelope = Envelope { above: [0.0, 0.0, 1.0], below: [0.0; 3] };
+
+    fn cut(points: &[[f64; 3]], normal: [f64; 3]) -> (Cut, Vec<[u32; 3]>) {
+        let mut polygon = Polygon::default();
+        for (vertex, &position) in (0..).zip(points) {
+            polygon.push(PolygonCorner { vertex, position });
+        }
+        let mut triangles = Vec::new();
+        let tangent = Tangent::new([0.0, 0.0, 0.5], normal, 1.0);
+        (polygonize(&polygon, &ENVELOPE, &tangent, &mut triangles), triangles)
+    }
+
+    #[test]
+    fn creases_come_out_along_diagonals() {
+        // Corners 1 and 3 on a crease, corner 0 on the flat side with the crossing, corner 2 below.
+        let points = [[0.5, 0.5, 0.5], [-0.5, 0.4, 0.5], [-0.5, -0.5, 0.1], [0.4, -0.5, 0.5]];
+        let (kind, triangles) = cut(&points, [0.0, 0.0, 1.0]);
+        assert_eq!((kind, triangles), (Cut::Diagonals, vec![[1, 2, 3], [3, 0, 1]]));
+    }
+
+    #[test]
+    fn flat_quads_take_the_shorter_diagonal() {
+        let points = [[0.2, 0.2, 0.5], [-0.8, 0.9, 0.5], [-0.2, -0.2, 0.5], [0.9, -0.8, 0.5]];
+        assert_eq!(cut(&points, [0.0, 0.0, 1.0]).1, [[0, 1, 2], [2, 3, 0]]);
+    }
+
+    /// Corners anywhere in their cells: [LW11] Remarks 10 and 11.
+    #[test]
+    fn opposite_corners_are_never_concave_and_neighbours_force_a_split() {
+        let mut state = 3u64;
+        let mut random = move || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let (mut splits, mut single) = (0, 0);
+        for _ in 0..20_000 {
+            let points: [[f64; 3]; 4] = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]].map(|[x, y]| {
+                // Cubes, to have many close to the edge.
+                [x * (1e-3 + random().powi(3)), y * (1e-3 + random().powi(3)), 1e-3 + 0.998 * random()]
+            });
+            let concave: [bool; 4] = std::array::from_fn(|i| {
+                !ENVELOPE.is_good(points[(i + 3) % 4], points[i], points[(i + 1) % 4])
+            });
+            assert!((0..2).all(|i| !(concave[i] && concave[i + 2])), "{points:?}");
+            let (kind, triangles) = cut(&points, [0.0, 0.0, 1.0]);
+            match concave.iter().filter(|&&c| c).count() {
+                2 => {
+                    assert_eq!((kind, triangles.len()), (Cut::Split, 4));
+                    assert!(triangles.iter().all(|t| t[2] == EDGE_VERTEX));
+                    splits += 1;
+                }
+                count => {
+                    assert_eq!((kind, triangles.len()), (Cut::Diagonals, 2));
+                    single += count;
+                }
+            }
+        }
+        assert!(splits > 100 && single > 100, "{splits} {single}");
+    }
+
+    #[test]
+    fn polygons_with_face_vertices_lose_their_ears() {
+        let points =
+            [[0.5, 0.5, 0.5], [0.0, 0.4, 0.6], [-0.5, 0.5, 0.5], [-0.5, -0.5, 0.5], [0.5, -0.5, 0.5]];
+        let (kind, triangles) = cut(&points, [0.0, 0.0, 1.0]);
+        assert_eq!((kind, triangles.len()), (Cut::Diagonals, 3));
+    }
+}

@@ -1,0 +1,41 @@
+//! What happened during contouring.
+
+use serde::Serialize;
+use std::ops::AddAssign;
+
+/// Counts of one contouring: the part `contour` of the statistics file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct ContourStatistics {
+    /// Cells with corners of both signs.
+    pub cells: u64,
+    /// Cells with more than one sheet.
+    pub several_sheets: u64,
+    /// Crossed grid edges, each with its polygon of four cell vertices and perhaps some face vertices.
+    pub quads: u64,
+    /// Polygons that were cut along diagonals.
+    pub diagonal: u64,
+    /// Polygons that were split, wholly or in part, by a vertex on their grid edge.
+    pub split: u64,
+    /// Vertices on faces between cells.
+    pub face_vertices: u64,
+    /// Cell vertices whose error function is least outside their cell or their walls.
+    pub clamped: u64,
+    /// Vertices of the result.
+    pub vertices: u64,
+    /// Triangles of the result.
+    pub triangles: u64,
+}
+
+impl AddAssign for ContourStatistics {
+    fn add_assign(&mut self, other: ContourStatistics) {
+        self.cells += other.cells;
+        self.several_sheets += other.several_sheets;
+        self.quads += other.quads;
+        self.diagonal += other.diagonal;
+        self.split += other.split;
+        self.face_vertices += other.face_vertices;
+        self.clamped += other.clamped;
+        self.vertices += other.vertices;
+        self.triangles += other.triangles;
+    }
+}

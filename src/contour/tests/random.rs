@@ -1,0 +1,126 @@
+//! Random lattices made to be nasty, each judged by the exact audit.
+
+use super::audit::Audit;
+use super::fields::{Random, crossings, run, signs};
+use crate::band::{Axis, Ijk, SignField};
+use crate::contour::{ContourStatistics, Precision};
+use crate::edge::{Crossing, Crossings};
+
+/// Whether the long run was asked for.
+fn is_heavy() -> bool {
+    std::env::var_os("EXOCARP_HEAVY").is_some_and(|v| v == "1")
+}
+
+/// Crossings anywhere, often right next to a corner, and normals that point anywhere, so that most
+/// minimisers lie far outside their cells.
+fn nasty(random: &mut Random, signs: &SignField) -> Crossings {
+    let ends = random.unit();
+    crossings(signs, |_, _| {
+        let t = match random.unit() {
+            u if u < 0.3 * ends => 0.0,
+            u if u < 0.6 * ends => 1.0,
+            u if u < 0.8 * ends => 1e-6 * random.unit(),
+            _ => random.unit(),
+        };
+        Crossing { t, normal: random.direction().map(|x| x as f32) }
+    })
+}
+
+/// A lattice of random signs in n^3 nodes from `corner` on.
+fn lattice(seed: u64, n: i32, corner: Ijk) -> (SignField, Crossings) {
+    let mut random = Random(seed);
+    let density = 0.2 + 0.6 * random.unit();
+    let nodes: Vec<bool> = (0..n * n * n).map(|_| random.unit() < density).collect();
+    let field = signs(corner, corner + Ijk([n - 1; 3]), |node| {
+        let [x, y, z] = (node - corner).0;
+        nodes[((x * n + y) * n + z) as usize]
+    });
+    let crossings = nasty(&mut random, &field);
+    (field, crossings)
+}
+
+/// Lattices: voxel size, lowest node, precision. The second has a few hundred, the third some ten
+/// 32-bit coordinates per voxel, the fourth node planes that are off by a thousandth of a voxel.
+const PLACES: [(f64, i32, Precision); 5] = [
+    (1.0, 0, Precision::F32),
+    (0.1, 200_000, Precision::F32),
+    (0.1, -640_000, Precision::F32),
+    (1.0 / 3.0, 12_345, Precision::F32),
+    (0.1, 1_000_003, Precision::F64),
+];
+
+fn check(seed: u64, n: i32) -> (ContourStatistics, usize) {
+    let (voxel, at, precision) = PLACES[(seed % PLACES.len() as u64) as usize];
+    let corner = Ijk::new(at, 3 - at / 2, at / 3 + 5);
+    let (mesh, statistics) = run(&lattice(seed, n, corner), voxel, precision, 1);
+    let audit = Audit::of(&mesh);
+    assert!(audit.is_clean(), "seed {seed}, {n}^3: {audit:?}, {statistics:?}");
+    assert!(mesh.vertices.iter().flatten().all(|&x| precision.round(x) == x));
+    (statistics, audit.pairs)
+}
+
+fn check_all(seeds: std::ops::Range<u64>, n: i32) {
+    let (mut sum, mut pairs) = (ContourStatistics::default(), 0);
+    let count = seeds.end - seeds.start;
+    for seed in seeds {
+        let (statistics, tested) = check(seed, n);
+        sum += statistics;
+        pairs += tested;
+    }
+    println!("{count} lattices of {n}^3: {pairs} pairs, {sum:?}");
+    // Nothing of the construction went untried.
+    let tried = [sum.several_sheets, sum.face_vertices, sum.clamped, sum.split, sum.diagonal];
+    assert!(tried.iter().all(|&n| n > count), "{sum:?}");
+}
+
+#[test]
+fn random_lattices_are_closed_manifold_and_free_of_intersections() {
+    check_all(0..if is_heavy() { 10_000 } else { 300 }, 6);
+}
+
+#[test]
+fn larger_random_lattices_too() {
+    check_all(1_000_000..if is_heavy() { 1_000_050 } else { 1_000_002 }, 24);
+}
+
+/// Every mask of a cell in the middle, in random surroundings.
+#[test]
+fn all_masks_in_random_surroundings() {
+    let rounds = if is_heavy() { 20 } else { 1 };
+    for round in 0..rounds {
+        for mask in 0..256u64 {
+            let mut random = Random(1000 * round + mask);
+            let n = 4;
+            let nodes: Vec<bool> = (0..64).map(|_| random.unit() < 0.5).collect();
+            let field = signs(Ijk([6; 3]), Ijk([9; 3]), |node| {
+                let [x, y, z] = (node - Ijk([6; 3])).0;
+                let middle = [x, y, z].iter().all(|c| (1..3).contains(c));
+                let corner = (x - 1) + 2 * (y - 1) + 4 * (z - 1);
+                if middle { mask >> corner & 1 == 1 } else { nodes[((x * n + y) * n + z) as usize] }
+            });
+            let crossings = nasty(&mut random, &field);
+            let (mesh, _) = run(&(field, crossings), 0.7, Precision::F32, 1);
+            let audit = Audit::of(&mesh);
+            assert!(audit.is_clean(), "mask {mask:#x}, round {round}: {audit:?}");
+        }
+    }
+}
+
+/// What is not a number must not break anything.
+#[test]
+fn broken_crossings_still_give_a_closed_mesh() {
+    let (field, _) = lattice(7, 6, Ijk([-3; 3]));
+    let mut n = 0;
+    let crossings = crossings(&field, |_, axis| {
+        n += 1;
+        let bad = [f64::NAN, f64::INFINITY, -5.0, 0.5][n % 4];
+        let normal = match axis {
+            Axis::X => [f32::NAN, 0.0, 0.0],
+            Axis::Y => [0.0; 3],
+            Axis::Z => [f32::MAX, f32::INFINITY, 1.0],
+        };
+        Crossing { t: bad, normal }
+    });
+    let (mesh, _) = run(&(field, crossings), 1.0, Precision::F32, 2);
+    assert!(Audit::of(&mesh).is_clean());
+}

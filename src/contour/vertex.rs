@@ -1,0 +1,117 @@
+//! The vertex of a sheet: as close to the minimiser of its quadratic error function as its cell and its
+//! walls allow.
+
+use super::cell::{Edge, EdgeSet};
+use super::grid::Grid;
+use super::qef::Qef;
+use super::region::Region;
+use super::sheets::Case;
+use crate::band::Ijk;
+use crate::edge::Crossing;
+
+/// After rounding, a vertex keeps at least this share of the margin. The margin is 2 units in the last place
+/// or more, and rounding of the vertex and of the cell's walls takes half a unit each.
+const KEPT: f64 = 0.25;
+
+/// After rounding, a vertex keeps at least this share of the margin from its walls, where three coordinates
+/// are rounded.
+const KEPT_AT_WALLS: f64 = 1.0 / 16.0;
+
+/// Halvings of the step from the start to the target before the start itself is taken.
+const HALVINGS: i32 = 12;
+
+/// Steps from the mean of the crossings to the mean of the midpoints of their edges.
+const STEPS_TO_MIDDLE: i32 = 8;
+
+/// Whether a vertex lies at the minimiser of its error function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Placement {
+    /// At the minimiser.
+    Free,
+    /// At the least point that its cell and its walls allow.
+    Clamped,
+}
+
+/// The position of the vertex of sheet number `sheet` of a cell, rounded. `crossing` gives the sample of
+/// each of the sheet's edges.
+pub fn place<'a>(
+    grid: &Grid,
+    cell: Ijk,
+    case: &Case,
+    sheet: usize,
+    crossing: impl Fn(Edge) -> &'a Crossing,
+) -> ([f64; 3], Placement) {
+    let edges = case.sheets()[sheet].edges;
+    let mut qef = Qef::default();
+    for edge in edges.iter() {
+        let sample = crossing(edge);
+        qef.add(on_edge(edge, unit(sample.t)), sample.normal.map(f64::from));
+    }
+    let minimiser = qef.minimiser();
+    let margin = grid.margin();
+    if !case.has_several_sheets() {
+        let inside = |x: f64| (margin..=1.0 - margin).contains(&x);
+        if minimiser.point.iter().all(|&x| inside(x)) {
+            return (grid.round_ideal(cell, minimiser.point), Placement::Free);
+        }
+    }
+    let region = Region::of_sheet(case, sheet, margin, 0.5 * margin);
+    let allowed = Region::of_sheet(case, sheet, KEPT * margin, KEPT_AT_WALLS * margin);
+    let target = minimiser.within(region.half_spaces());
+    let placement = if target == Some(minimiser.point) { Placement::Free } else { Placement::Clamped };
+    let fits = |position: [f64; 3]| allowed.contains(grid.local(cell, position));
+    if let Some(target) = target {
+        let position = grid.round_ideal(cell, target);
+        if fits(position) {
+            return (position, placement);
+        }
+    }
+    let start = start(grid, cell, edges, &crossing, fits);
+    let target = grid.ideal(cell, target.unwrap_or(minimiser.point));
+    let towards = |share: f64| grid.round(mix(start, target, share));
+    let position = (0..HALVINGS).map(|n| towards(0.5f64.powi(n))).find(|&position| fits(position));
+    (position.unwrap_or(start), Placement::Clamped)
+}
+
+/// A position that is allowed for sure: the mean of the crossings, or if rounding or the margin puts that
+/// on a wall, a position on the way from there to the mean of the midpoints of the crossed edges.
+fn start<'a>(
+    grid: &Grid,
+    cell: Ijk,
+    edges: EdgeSet,
+    crossing: impl Fn(Edge) -> &'a Crossing,
+    fits: impl Fn([f64; 3]) -> bool,
+) -> [f64; 3] {
+    let (mut mean, mut middle, count) = ([0.0; 3], [0.0; 3], edges.len() as f64);
+    for edge in edges.iter() {
+        let (point, midpoint) = (on_edge(edge, grid.clamp(crossing(edge).t)), on_edge(edge, 0.5));
+        for a in 0..3 {
+            mean[a] += point[a];
+            middle[a] += midpoint[a];
+        }
+    }
+    let mean = mean.map(|x| grid.clamp(x / count));
+    let middle = middle.map(|x| x / count);
+    let position =
+        |step: i32| grid.between_walls(cell, mix(mean, middle, f64::from(step) / f64::from(STEPS_TO_MIDDLE)));
+    let found = (0..STEPS_TO_MIDDLE).map(position).find(|&p| fits(p));
+    found.unwrap_or_else(|| position(STEPS_TO_MIDDLE))
+}
+
+/// The point of an edge at position `t`, in coordinates 0 to 1 of the cell.
+#[inline]
+fn on_edge(edge: Edge, t: f64) -> [f64; 3] {
+    let mut point = edge.low().offset().map(f64::from);
+    point[edge.axis() as usize] = t;
+    point
+}
+
+/// `t` kept within 0 to 1; what is not a number becomes 0.
+#[inline]
+fn unit(t: f64) -> f64 {
+    if t >= 0.0 { t.min(1.0) } else { 0.0 }
+}
+
+fn mix(a: [f64; 3], b: [f64; 3], share: f64) -> [f64; 3] {
+    std::array::from_fn(|i| a[i] + share * (b[i] - a[i]))
+}

@@ -1,0 +1,50 @@
+//! Exact orientation tests, over the adaptive predicates of the `robust` crate.
+//!
+//! The sign of a result is exact for all finite coordinates whose products neither overflow nor
+//! underflow; its size is only approximate.
+
+use robust::{Coord, Coord3D};
+
+fn coord(p: [f64; 3]) -> Coord3D<f64> {
+    Coord3D { x: p[0], y: p[1], z: p[2] }
+}
+
+/// Six times the signed volume of the tetrahedron abcd: ((b - a) x (c - a)) . (d - a). Positive when d
+/// sees the triangle abc counter-clockwise, zero when the four points are coplanar.
+#[inline]
+pub fn orient3d(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> f64 {
+    // `robust` counts the other side as positive.
+    robust::orient3d(coord(b), coord(a), coord(c), coord(d))
+}
+
+/// Twice the signed area of the triangle abc: positive when it is counter-clockwise, zero when the three
+/// points are collinear.
+#[inline]
+pub fn orient2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+    let coord = |p: [f64; 2]| Coord { x: p[0], y: p[1] };
+    robust::orient2d(coord(a), coord(b), coord(c))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signs_follow_the_right_hand() {
+        let (o, x, y) = ([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+        assert!(orient3d(o, x, y, [0.3, 0.3, 1e-300]) > 0.0);
+        assert!(orient3d(o, x, y, [0.3, 0.3, -1.0]) < 0.0);
+        assert_eq!(orient3d(o, x, y, [7.0, -3.0, 0.0]), 0.0);
+        assert!(orient2d([0.0; 2], [1.0, 0.0], [0.0, 1.0]) > 0.0);
+    }
+
+    #[test]
+    fn the_last_bit_decides() {
+        let n = 1.0 + f64::EPSILON;
+        let (a, b, c) = ([n, 1.0, 1.0], [1.0, n, 1.0], [1.0, 1.0, n]);
+        // x + y + z = 3 + epsilon on the plane; a third of an ulp off it cannot be seen in floating point.
+        assert!(orient3d(a, b, c, [n, n, 1.0]) > 0.0);
+        assert!(orient3d(a, b, c, [1.0, 1.0, 1.0]) < 0.0);
+        assert_eq!(orient3d(a, b, c, [n, 1.0, 1.0]), 0.0);
+    }
+}

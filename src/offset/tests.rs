@@ -1,0 +1,231 @@
+//! The whole way, against closed forms and brute force.
+
+use super::*;
+use crate::contour::tests::audit::Audit;
+use crate::mesh::{measure, shapes};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+fn run(threads: usize) -> RunSettings {
+    RunSettings::with_threads(threads).unwrap()
+}
+
+fn settings(distance: f64, voxel: f64) -> OffsetSettings {
+    OffsetSettings {
+        distance: Length::Units(distance),
+        voxel: VoxelSize::Units(voxel),
+        precision: Precision::F64,
+        ..OffsetSettings::default()
+    }
+}
+
+fn rotated(mut mesh: TriMesh) -> TriMesh {
+    let rotation = glam::DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.7);
+    for v in &mut mesh.vertices {
+        *v = (rotation * DVec3::from(*v) + DVec3::new(0.013, -0.021, 0.007)).to_array();
+    }
+    mesh
+}
+
+#[test]
+fn a_box_shrunk_is_a_box_with_exact_corners() {
+    // Half-side 1 less 0.237: the faces are not on the lattice of 0.1.
+    let result = offset(&shapes::cube(1), &settings(-0.237, 0.1), &run(2)).unwrap();
+    assert!(Audit::of(&result.mesh).is_clean());
+    for n in 0..8 {
+        let corner = DVec3::from([0, 1, 2].map(|a| if n >> a & 1 == 1 { 0.763 } else { -0.763 }));
+        let nearest = result.mesh.vertices.iter().map(|&v| (DVec3::from(v) - corner).length());
+        let nearest = nearest.fold(f64::INFINITY, f64::min);
+        assert!(nearest < 1e-6 * 0.1, "corner {corner} is missed by {nearest}");
+    }
+    // No vertex is off the box, so with the corners its volume is that of the box.
+    let volume = measure::signed_volume(&result.mesh);
+    assert!((volume - (2.0 * 0.763f64).powi(3)).abs() < 1e-6, "{volume}");
+}
+
+/// Errors of volume and area of the grown cube of side 2 against Steiner's formulas.
+fn steiner_errors(r: f64, voxel: f64) -> [f64; 2] {
+    let result = offset(&rotated(shapes::cube(1)), &settings(r, voxel), &run(2)).unwrap();
+    assert!(Audit::of(&result.mesh).is_clean());
+    // Volume 8, area 24, and edges of total length 24 with a quarter turn each.
+    let volume = 8.0 + 24.0 * r + 6.0 * PI * r * r + 4.0 / 3.0 * PI * r.powi(3);
+    let area = 24.0 + 12.0 * PI * r + 4.0 * PI * r * r;
+    let relative = |measured: f64, exact: f64| (measured / exact - 1.0).abs();
+    [relative(measure::signed_volume(&result.mesh), volume), relative(measure::area(&result.mesh), area)]
+}
+
+#[test]
+fn a_dilated_cube_converges_to_steiners_formulas_at_second_order() {
+    let [coarse, fine] = [0.1, 0.05].map(|voxel| steiner_errors(0.5, voxel));
+    for (coarse, fine) in coarse.into_iter().zip(fine) {
+        assert!(fine < 2e-3, "{fine}");
+        // Halving h divides the error by four; 3 leaves room for higher orders.
+        assert!(coarse / fine > 3.0, "{coarse} {fine}");
+    }
+}
+
+#[test]
+fn crossings_lie_on_the_offset_surface_by_brute_force() {
+    let mesh = shapes::carved_cube(6);
+    let topology = Topology::new(&mesh);
+    let distance = SignedDistance::new(&mesh, &topology);
+    for r in [0.11, -0.07, 0.0] {
+        let band_settings = settings(r, 0.08).resolve(&mesh).unwrap();
+        let (band, _) = narrow_band::build(&distance, &band_settings, &run(2)).unwrap();
+        let (signs, triangles) = narrow_band::read_back(&band).unwrap();
+        let numbers = EdgeNumbers::new(&signs).unwrap();
+        let lattice = band_settings.lattice;
+        let (crossings, statistics) =
+            solve(&distance, lattice, r, &signs, numbers, &triangles, &run(2)).unwrap();
+        let solved: u64 = statistics.by_subdivision.iter().sum::<u64>() + statistics.bisected;
+        assert_eq!((statistics.intersected, statistics.sign_jumps), (solved, 0));
+        let mut checked = 0;
+        for leaf in signs.leaves() {
+            for (axis, number) in crossings.numbers.in_leaf(leaf) {
+                let sample = crossings.sample(crossings.numbers.get(leaf, axis, number).unwrap());
+                let node = crate::lattice::Ijk::in_leaf(signs.origin(leaf), number);
+                let mut p = DVec3::from(lattice.world_from_index(node));
+                p[axis as usize] += sample.t * lattice.voxel;
+                let nearest = (0..mesh.triangles.len() as u32)
+                    .map(|t| distance.ssvh().triangle(t).distance_squared(p))
+                    .fold(f64::INFINITY, f64::min)
+                    .sqrt();
+                assert!((nearest - r.abs()).abs() <= 1e-6 * lattice.voxel, "{p} {nearest} {r}");
+                let length = DVec3::from(sample.normal.map(f64::from)).length();
+                assert!((length - 1.0).abs() < 1e-6);
+                checked += 1;
+            }
+        }
+        assert!(checked > 1000, "{checked}");
+    }
+}
+
+#[test]
+fn every_closed_model_gives_a_clean_mesh() {
+    for shape in shapes::ALL.iter().filter(|s| s.volume.is_some()) {
+        let mesh = (shape.make)(4);
+        for fraction in [0.08, 0.01, 0.0, -0.01] {
+            let settings = OffsetSettings {
+                distance: Length::OfDiagonal(fraction),
+                voxel: VoxelSize::Resolution(40),
+                ..OffsetSettings::default()
+            };
+            match offset(&mesh, &settings, &run(2)) {
+                Ok(result) => {
+                    assert!(result.statistics.contour.triangles > 100, "{}", shape.name);
+                    let audit = Audit::of(&result.mesh);
+                    assert!(audit.is_clean(), "{} {fraction}: {audit:?}", shape.name);
+                }
+                Err(Error::Empty(empty)) => assert!(fraction < 0.0, "{} {fraction}: {empty}", shape.name),
+                Err(error) => panic!("{} {fraction}: {error}", shape.name),
+            }
+        }
+    }
+}
+
+#[test]
+fn zero_distance_keeps_a_box_sharp() {
+    let mesh = rotated(shapes::cube(1));
+    let result = offset(&mesh, &settings(0.0, 0.1), &run(2)).unwrap();
+    assert!(Audit::of(&result.mesh).is_clean());
+    let topology = Topology::new(&mesh);
+    let distance = SignedDistance::new(&mesh, &topology);
+    let errors = result.mesh.vertices.iter().map(|&v| distance.at(v.into(), 0).distance.abs() / 0.1);
+    let errors: Vec<f64> = errors.collect();
+    // A vertex whose crease passes outside its cell stays in the cell, and misses the crease.
+    let exact = errors.iter().filter(|&&e| e < 1e-5).count();
+    assert!(exact as f64 > 0.95 * errors.len() as f64, "{exact} of {}", errors.len());
+    assert!(errors.iter().all(|&e| e < 0.5), "{errors:?}");
+}
+
+#[test]
+fn the_same_result_for_every_number_of_threads() {
+    let mesh = shapes::flower(8);
+    let results = [1, 2, 8].map(|threads| offset(&mesh, &settings(0.05, 0.04), &run(threads)).unwrap());
+    assert_eq!(results[0].mesh, results[1].mesh);
+    assert_eq!(results[0].mesh, results[2].mesh);
+    assert_eq!(results[0].statistics.edges, results[2].statistics.edges);
+    assert_eq!(results[0].statistics.filter, results[2].statistics.filter);
+}
+
+#[test]
+fn a_grown_offset_has_a_larger_volume() {
+    let mesh = shapes::anchor(6);
+    let volumes = [-0.05, -0.02, 0.0, 0.03, 0.1]
+        .map(|r| measure::signed_volume(&offset(&mesh, &settings(r, 0.04), &run(2)).unwrap().mesh));
+    assert!(volumes.is_sorted(), "{volumes:?}");
+}
+
+#[test]
+fn an_open_mesh_is_refused_with_its_first_boundary_edge() {
+    let mesh = shapes::wave(4);
+    let error = offset(&mesh, &settings(0.1, 0.1), &run(1)).unwrap_err();
+    let Error::Input(InputError::Open { count, .. }) = &error else { panic!("{error}") };
+    assert!(*count > 0);
+    assert!(error.to_string().contains("boundary edges"), "{error}");
+
+    let mut twisted = shapes::cube(1);
+    twisted.triangles[0].swap(0, 1);
+    let error = offset(&twisted, &settings(0.1, 0.1), &run(1)).unwrap_err();
+    assert!(matches!(error, Error::Input(InputError::Misoriented { count: 3, .. })), "{error}");
+    let error = offset(&TriMesh::default(), &settings(0.1, 0.1), &run(1)).unwrap_err();
+    assert!(matches!(error, Error::Input(InputError::NoTriangles)), "{error}");
+}
+
+#[test]
+fn an_open_mesh_goes_ahead_by_pseudonormals_and_is_closed_at_jumps() {
+    // A sphere with a hole much wider than the shrink: the sign jumps inside, far from the surface.
+    let mut mesh = shapes::sphere(6);
+    let z = |t: &[u32; 3]| t.iter().map(|&v| mesh.vertices[v as usize][2]).sum::<f64>() / 3.0;
+    let kept: Vec<[u32; 3]> = mesh.triangles.iter().copied().filter(|t| z(t) < 0.6).collect();
+    mesh.triangles = kept;
+    let mut jumps = 0;
+    for r in [-0.1, 0.1, 0.0] {
+        let settings = OffsetSettings { sign: SignMode::Pseudonormal, ..settings(r, 0.05) };
+        let result = offset(&mesh, &settings, &run(2)).unwrap();
+        let audit = Audit::of(&result.mesh);
+        assert!(audit.is_clean(), "{r}: {audit:?}");
+        jumps += result.statistics.edges.sign_jumps;
+    }
+    assert!(jumps > 0, "the hole must have been closed somewhere");
+}
+
+#[test]
+fn shrinking_beyond_everything_names_the_depth() {
+    let error = offset(&shapes::cube(1), &settings(-1.5, 0.1), &run(1)).unwrap_err();
+    let Error::Empty(EmptyResult::TooDeep { depth, .. }) = error else { panic!("{error}") };
+    assert!((depth - 1.0).abs() < 2e-3, "{depth}");
+    // Something is left, a cube of side 0.02, but it slips between the nodes.
+    let mut mesh = shapes::cube(1);
+    for v in mesh.vertices.as_flattened_mut() {
+        *v += 0.17;
+    }
+    let error = offset(&mesh, &settings(-0.99, 0.34), &run(1)).unwrap_err();
+    assert!(matches!(error, Error::Empty(EmptyResult::TooThin { .. })), "{error}");
+}
+
+#[test]
+fn settings_that_make_no_sense_are_refused() {
+    let mesh = shapes::cube(1);
+    for wrong in [
+        settings(f64::NAN, 0.1),
+        settings(0.1, 0.0),
+        settings(0.1, -1.0),
+        settings(0.1, f64::INFINITY),
+        settings(0.1, 1e-12),
+        OffsetSettings { half_width: 0.5, ..settings(0.1, 0.1) },
+        OffsetSettings { voxel: VoxelSize::Resolution(0), ..settings(0.1, 0.1) },
+    ] {
+        let error = offset(&mesh, &wrong, &run(1)).unwrap_err();
+        assert!(matches!(error, Error::Settings(_)), "{wrong:?}: {error}");
+    }
+}
+
+#[test]
+fn a_voxel_size_beyond_memory_is_refused_with_one_that_fits() {
+    let limited = |voxel| OffsetSettings { max_memory: Some(64 << 20), ..settings(0.1, voxel) };
+    let error = offset(&shapes::cube(1), &limited(0.001), &run(1)).unwrap_err();
+    let Error::Memory(MemoryError { needed, allowed, smallest_voxel, .. }) = error else { panic!("{error}") };
+    assert!(needed > allowed && smallest_voxel > 0.001);
+    assert!(offset(&shapes::cube(1), &limited(smallest_voxel * 1.01), &run(2)).is_ok());
+}
