@@ -16,14 +16,16 @@ exocarp() { "${CARGO_TARGET_DIR:-target}/release/exocarp" "$@"; }
 # A number or a word from one of our JSON files, which have one field on a line; the first one of its name.
 field() { sed -n "s/^ *\"$2\": \"\{0,1\}\([^\",]*\)\"\{0,1\},\{0,1\}$/\1/p" "$1" | head -n 1; }
 
-row() { printf '  %-24s %10s %12s %7s  %s\n' "$@"; }
+row() { printf '  %-32s %10s %9s %6s  %s\n' "$@"; }
+
+yes_or_no() { [ "$1" = true ] && echo yes || echo no; }
 
 describe() {
     local json=out/.info.json
     exocarp info "$1" --json >"$json"
     local volume
     volume=$(field "$json" volume)
-    row "$1" "$(field "$json" triangles)" "$(printf '%.6g' "${volume/null/0}")" "$(field "$json" closed)" "$2"
+    row "$1" "$(field "$json" triangles)" "$(printf '%.6g' "${volume/null/0}")" "$(yes_or_no "$(field "$json" closed)")" "$2"
     rm -f "$json"
 }
 

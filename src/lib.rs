@@ -15,3 +15,8 @@ pub mod vdb;
 pub mod edge;
 pub mod contour;
 pub mod offset;
+
+/// The README's example runs as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
