@@ -1,4 +1,4 @@
-//! Dual contouring without intersections ([LW11] section VI, extended).
+//! Dual contouring without intersections (\[LW11\] section VI, extended).
 //!
 //! Input is a sign for every node and a crossing for every grid edge with a sign change. Whatever they
 //! are, the output is
