@@ -1,4 +1,4 @@
-//! The narrow band around the offset surface ([LW11] section IV).
+//! The narrow band around the offset surface (\[LW11\] section IV).
 
 mod build;
 mod jumps;

@@ -39,7 +39,7 @@ impl SignField {
     /// The field of the leaves given by `origins` and `inside` masks, in any order, no origin twice.
     /// `missing` is asked once for all neighbouring leaves that the band lacks (a sorted list of their
     /// origins): whether each is inside as a whole. Such a leaf is uniform in every band, since a node
-    /// next to a sign change is valid ([LW11] Definition 1) and thus in a leaf of the band.
+    /// next to a sign change is valid (\[LW11\] Definition 1) and thus in a leaf of the band.
     pub fn new<E>(
         origins: &[Ijk],
         inside: &[LeafMask],

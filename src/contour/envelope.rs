@@ -1,4 +1,4 @@
-//! Convex/concave analysis ([LW11] section VI): which triangles stay in the envelope of a grid edge.
+//! Convex/concave analysis (\[LW11\] section VI): which triangles stay in the envelope of a grid edge.
 //!
 //! The envelope of a crossed grid edge e with ends v+ and v- is the union of the tetrahedra (a, b, v+, v-)
 //! over the sides ab of the polygon around e (Definition 5). Envelopes of different edges do not overlap.

@@ -1,4 +1,4 @@
-//! Dual contouring without intersections ([LW11] section VI, extended).
+//! Dual contouring without intersections (\[LW11\] section VI, extended).
 //!
 //! Input is a sign for every node and a crossing for every grid edge with a sign change. Whatever they
 //! are, the output is
@@ -9,7 +9,9 @@
 //!
 //! exactly, for the coordinates as they are returned, which are those that a file of the chosen
 //! [`Precision`] can hold. It is void when the mesh is moved, scaled or rounded further afterwards.
-//! Creases and corners of the surface come out where the minimiser of the error function lies in its cell.
+//! Creases and corners of the surface come out where the minimiser of the error function lies in its cell;
+//! elsewhere they are blunted by less than a voxel. `tests::random` proves the promise on random lattices with
+//! an independent exact audit, 10,000 of them and some of 24^3 nodes when `EXOCARP_HEAVY=1` is set.
 //!
 //! The way, a file for each step:
 //!

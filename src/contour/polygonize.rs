@@ -210,7 +210,7 @@ mod tests {
         assert_eq!(cut(&points, [0.0, 0.0, 1.0]).1, [[0, 1, 2], [2, 3, 0]]);
     }
 
-    /// Corners anywhere in their cells: [LW11] Remarks 10 and 11.
+    /// Corners anywhere in their cells: \[LW11\] Remarks 10 and 11.
     #[test]
     fn opposite_corners_are_never_concave_and_neighbours_force_a_split() {
         let mut state = 3u64;

@@ -2,7 +2,7 @@
 //!
 //! On each face the crossings are joined in pairs. A face with four crossings (an *ambiguous* one) can be
 //! joined in two ways, around its inside corners or around its outside corners; both cells must choose
-//! alike. The pairs of a cell close up to cycles, the *sheets*, and each sheet gets one vertex. [LW11]
+//! alike. The pairs of a cell close up to cycles, the *sheets*, and each sheet gets one vertex. \[LW11\]
 //! section VI leaves such cells open.
 //!
 //! Of several sheets in a cell all but at most one are *caps*, which a plane (its *wall*) cuts off:

@@ -1,4 +1,4 @@
-//! Where a segment reaches the offset distance from one triangle, in closed form ([LW11] section V.B).
+//! Where a segment reaches the offset distance from one triangle, in closed form (\[LW11\] section V.B).
 
 use super::regions::{Piece, walk};
 use crate::geom::roots::quadratic;

@@ -1,4 +1,4 @@
-//! The hybrid solver for one edge ([LW11] section V.A): analytic where the closest points of both ends
+//! The hybrid solver for one edge (\[LW11\] section V.A): analytic where the closest points of both ends
 //! share a triangle, verified by a query, bisection otherwise, with a new analytic attempt after each
 //! subdivision.
 

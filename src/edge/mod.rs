@@ -1,4 +1,4 @@
-//! Intersections of grid edges with the offset surface ([LW11] section V).
+//! Intersections of grid edges with the offset surface (\[LW11\] section V).
 //!
 //! Promised for closed input: every crossing lies within 1e-6 voxels of the offset surface.
 

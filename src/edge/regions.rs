@@ -1,4 +1,4 @@
-//! The walk of a segment through the regions around a triangle ([LW11] section V.B, Definition 4).
+//! The walk of a segment through the regions around a triangle (\[LW11\] section V.B, Definition 4).
 //!
 //! The seven regions are separated by planes perpendicular to the triangle: one through each edge, and
 //! two at the ends of each edge. Each region is convex, so a segment crosses it in one piece.

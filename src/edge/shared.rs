@@ -1,4 +1,4 @@
-//! The necessary condition for the analytic solution ([LW11] Remark 4): the closest points of both ends
+//! The necessary condition for the analytic solution (\[LW11\] Remark 4): the closest points of both ends
 //! lie on one triangle.
 //!
 //! A closest point on an edge or a vertex belongs to every triangle there, so the two triangles that the

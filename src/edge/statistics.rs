@@ -1,4 +1,4 @@
-//! How the edge intersections were found: the counts of [LW11] Table V.
+//! How the edge intersections were found: the counts of \[LW11\] Table V.
 
 use serde::Serialize;
 use std::ops::AddAssign;

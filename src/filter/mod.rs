@@ -1,4 +1,4 @@
-//! The filters that keep distance computations to the neighbourhood of the offset surface ([LW11]
+//! The filters that keep distance computations to the neighbourhood of the offset surface (\[LW11\]
 //! section IV): bounding box, signed distance, octree. The fourth, the swept sphere volume hierarchy,
 //! is a room of its own.
 //!

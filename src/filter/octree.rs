@@ -1,4 +1,4 @@
-//! The octree filter ([LW11] section IV.D), and the order in which the filters are applied.
+//! The octree filter (\[LW11\] section IV.D), and the order in which the filters are applied.
 
 use super::{Block, FilterStatistics, bounding_box, signed_distance};
 use crate::distance::SignedDistance;

@@ -1,4 +1,4 @@
-//! The signed distance filter ([LW11] section IV.C, Remarks 3a and 3b): of the two surfaces at distance d,
+//! The signed distance filter (\[LW11\] section IV.C, Remarks 3a and 3b): of the two surfaces at distance d,
 //! the one on the wrong side goes.
 //!
 //! The paper's intervals are closed at abs(phi) = l + delta; here they are open there, because a node at

@@ -1,4 +1,4 @@
-//! What the filters did: the counts of [LW11] Table IV.
+//! What the filters did: the counts of \[LW11\] Table IV.
 
 use serde::Serialize;
 use std::ops::AddAssign;

@@ -19,7 +19,7 @@ pub enum SweptKind {
 }
 
 /// A swept sphere volume: everything within `radius` of the rectangle
-/// { centre + x u + y v : |x| <= half[0], |y| <= half[1] }.
+/// { centre + x u + y v : |x| <= a, |y| <= b }, with a and b in `half`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Swept {
     /// Centre of the rectangle.

@@ -25,7 +25,7 @@ impl Side {
     }
 }
 
-/// The part of a triangle that a closest point lies on ([LW11] Definition 4).
+/// The part of a triangle that a closest point lies on (\[LW11\] Definition 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Feature {
     /// In the interior.

@@ -15,9 +15,9 @@ pub struct OffsetStatistics {
     pub voxel: f64,
     /// Seconds per stage.
     pub times: EngineTimes,
-    /// Distance computations by filter ([LW11] Table IV).
+    /// Distance computations by filter (\[LW11\] Table IV).
     pub filter: FilterStatistics,
-    /// Edge intersections by method ([LW11] Table V).
+    /// Edge intersections by method (\[LW11\] Table V).
     pub edges: EdgeStatistics,
     /// Cells, polygons, vertices.
     pub contour: ContourStatistics,

@@ -1,4 +1,4 @@
-//! Swept sphere volume hierarchy over the triangles of a mesh ([LW11] section IV.A, Larsen et al. 2000).
+//! Swept sphere volume hierarchy over the triangles of a mesh (\[LW11\] section IV.A, Larsen et al. 2000).
 //!
 //! A tree with eight children per node. Every child slot, inner node or single triangle, carries the
 //! best fitting of a point-, line- or rectangle-swept sphere in f32, conservatively rounded; eight slots
