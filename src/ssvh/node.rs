@@ -87,6 +87,7 @@ impl Node {
     #[inline(always)]
     pub(super) fn distances(&self, q: Vec3) -> [f32; WIDTH] {
         let mut out = [0.0; WIDTH];
+        #[allow(clippy::needless_range_loop, reason = "a slot runs through several arrays in step")]
         for i in 0..WIDTH {
             let (dx, dy, dz) = (q.x - self.centre[0][i], q.y - self.centre[1][i], q.z - self.centre[2][i]);
             let (ux, uy, uz) = (self.u[0][i], self.u[1][i], self.u[2][i]);

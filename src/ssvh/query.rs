@@ -72,6 +72,7 @@ fn improve(tree: &Ssvh, p: DVec3, mut best: Hit) -> Hit {
         match node.level {
             Level::Inner => {
                 let first = waiting;
+                #[allow(clippy::needless_range_loop, reason = "a slot runs through several arrays in step")]
                 for slot in 0..WIDTH {
                     if distances[slot] <= limit {
                         // Insertion keeps the nearest on top.
@@ -85,7 +86,9 @@ fn improve(tree: &Ssvh, p: DVec3, mut best: Hit) -> Hit {
                     }
                 }
             }
-            Level::Leaf => {
+            Level::Leaf =>
+            {
+                #[allow(clippy::needless_range_loop, reason = "a slot runs through several arrays in step")]
                 for slot in 0..WIDTH {
                     if distances[slot] <= limit {
                         let position = node.children[slot] as usize;
