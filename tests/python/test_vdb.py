@@ -1,9 +1,9 @@
 """Checks a .vdb file of exocarp with Python's OpenVDB, which is independent of exocarp's own reader.
 
-usage: test_vdb.py FILE.vdb --sphere RADIUS --voxel H --half-width W --active N
+usage: test_vdb.py FILE.vdb (--sphere RADIUS | --nodes FILE) --voxel H --half-width W --active N
 
-The file holds the level set of a sphere around the world origin. Exits with an AssertionError that says
-what is wrong.
+The file holds the level set of a sphere around the world origin, or one whose exact values at some nodes
+are given, a line "i j k phi" each. Exits with an AssertionError that says what is wrong.
 """
 
 import argparse
@@ -53,28 +53,44 @@ def check_band(grid):
     assert active and inactive
 
 
-def check_values(grid, phi, reach, background):
-    """1000 random nodes in and around the band, against the analytic distance."""
+def random_nodes(grid, radius, voxel):
+    """1000 random nodes in and around the band of a sphere, with the analytic distance."""
     rng = random.Random(1)
-    accessor = grid.getConstAccessor()
-    counts = {"inside": 0, "outside": 0, "band": 0}
+    reach = int(1.5 * radius / voxel)
     for _ in range(1000):
         node = tuple(rng.randint(-reach, reach) for _ in range(3))
+        position = grid.transform.indexToWorld(node)
+        yield node, sum(c * c for c in position) ** 0.5 - radius
+
+
+def nodes_of(path):
+    """The nodes and values of a file."""
+    for line in open(path):
+        i, j, k, phi = line.split()
+        yield (int(i), int(j), int(k)), float(phi)
+
+
+def check_values(grid, nodes):
+    """Signs, values and active states against exact ones."""
+    accessor = grid.getConstAccessor()
+    background = grid.background
+    counts = {"inside": 0, "outside": 0, "band": 0}
+    for node, exact in nodes:
         value, active = accessor.probeValue(node)
-        exact = phi(grid.transform.indexToWorld(node))
         assert (value < 0) == (exact < 0), (node, value, exact)
         clamped = max(-background, min(background, exact))
         assert abs(value - clamped) <= 1e-6 * background, (node, value, exact)
         assert active == (abs(value) < background), (node, value, active)
         counts["band" if active else "inside" if value < 0 else "outside"] += 1
     assert min(counts.values()) > 10, counts
-    print("1000 random nodes:", counts)
+    print(sum(counts.values()), "random nodes:", counts)
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("file")
-    parser.add_argument("--sphere", type=float, required=True)
+    parser.add_argument("--sphere", type=float)
+    parser.add_argument("--nodes")
     parser.add_argument("--voxel", type=float, required=True)
     parser.add_argument("--half-width", type=float, required=True)
     parser.add_argument("--active", type=int, required=True)
@@ -84,10 +100,8 @@ def main():
     surface = vdb.read(args.file, "surface")
     check_header(args.file, surface, args)
     check_band(surface)
-    reach = int(1.5 * args.sphere / args.voxel)
-    check_values(
-        surface, lambda p: sum(c * c for c in p) ** 0.5 - args.sphere, reach, surface.background
-    )
+    given = nodes_of(args.nodes) if args.nodes else random_nodes(surface, args.sphere, args.voxel)
+    check_values(surface, given)
 
 
 if __name__ == "__main__":

@@ -2,5 +2,6 @@
 
 mod files;
 mod grids;
+mod offsets;
 mod python;
 mod sphere;

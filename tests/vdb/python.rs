@@ -17,7 +17,7 @@ fn python() -> Option<&'static str> {
 }
 
 /// Runs a script of tests/python and returns what it says. Without Python, says by name what is skipped.
-fn run(test: &str, script: &str, arguments: &[&str]) -> Option<String> {
+pub fn run(test: &str, script: &str, arguments: &[&str]) -> Option<String> {
     let Some(python) = python() else {
         eprintln!("SKIPPED vdb::python::{test}: no python3 with pyopenvdb");
         return None;

@@ -1,0 +1,103 @@
+//! Bands of real offsets: OpenVDB's own checks, and Python against brute force.
+
+use crate::python;
+use exocarp::geom::triangle::Triangle;
+use exocarp::lattice::{Ijk, Lattice};
+use exocarp::mesh::{TriMesh, shapes};
+use exocarp::offset::{Length, OffsetResult, OffsetSettings, VoxelSize, offset};
+use exocarp::run::RunSettings;
+use exocarp::vdb::{VdbOptions, write};
+use std::fmt::Write as _;
+
+fn level_set(mesh: &TriMesh, distance: f64, voxel: f64) -> OffsetResult {
+    let settings = OffsetSettings {
+        distance: Length::Units(distance),
+        voxel: VoxelSize::Units(voxel),
+        half_width: 3.0,
+        ..OffsetSettings::default()
+    };
+    offset(mesh, &settings, &run()).unwrap()
+}
+
+fn run() -> RunSettings {
+    RunSettings::with_threads(2).unwrap()
+}
+
+#[test]
+fn smooth_offsets_pass_all_nine_checks() {
+    for (mesh, distance) in [
+        (shapes::sphere(16), 0.2),
+        (shapes::sphere(16), -0.2),
+        (shapes::torus(16), 0.1),
+        (shapes::torus(16), -0.1),
+        (shapes::cube(1), 0.5),
+    ] {
+        let band = level_set(&mesh, distance, 0.04).band;
+        assert_eq!(band.surface.check_level_set(&run()).unwrap(), Vec::<String>::new(), "{distance}");
+    }
+}
+
+#[test]
+fn all_offsets_pass_the_checks_but_the_gradient_at_creases() {
+    for shape in shapes::ALL.iter().filter(|s| s.volume.is_some()) {
+        for distance in [0.1, 0.0] {
+            let band = level_set(&(shape.make)(4), distance, 0.06).band;
+            let failed = band.surface.check_level_set(&run()).unwrap();
+            // Test 9 wants a gradient of about one on both sides of the surface. The exact distance has kinks
+            // where the offset surface has creases, so it cannot hold there (nor does it in level sets that
+            // OpenVDB makes of sharp models).
+            let unexpected: Vec<&String> = failed.iter().filter(|m| !m.starts_with("test 9")).collect();
+            assert!(unexpected.is_empty(), "{} {distance}: {unexpected:?}", shape.name);
+        }
+    }
+}
+
+/// Signed distance by looking at every triangle: the smallest distance, negative where the triangles' solid
+/// angles add up to a full turn.
+fn brute_force(mesh: &TriMesh, p: [f64; 3]) -> f64 {
+    let (mut nearest, mut turns) = (f64::INFINITY, 0.0);
+    for (t, &vertices) in mesh.triangles.iter().enumerate() {
+        let corners = mesh.corners(t).map(glam::DVec3::from);
+        nearest = nearest.min(Triangle::new(corners, vertices).distance_squared(p.into()));
+        let [a, b, c] = corners.map(|v| v - glam::DVec3::from(p));
+        let (la, lb, lc) = (a.length(), b.length(), c.length());
+        let denominator = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+        turns += a.dot(b.cross(c)).atan2(denominator) / std::f64::consts::TAU;
+    }
+    if turns > 0.5 { -nearest.sqrt() } else { nearest.sqrt() }
+}
+
+#[test]
+fn python_finds_the_distances_of_brute_force() {
+    let (distance, voxel) = (0.12, 0.05);
+    let mesh = shapes::carved_cube(4);
+    let result = level_set(&mesh, distance, voxel);
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("carved.vdb");
+    let options = VdbOptions { distance: Some(0.5), unit: Some("mm".into()), ..VdbOptions::default() };
+    write(&path, &result.band.surface, result.band.closest.as_ref(), &options).unwrap();
+
+    // 1,000 random nodes of the model's surroundings.
+    let mut state = 7u64;
+    let mut random = |n: i32| {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        ((state >> 33) % n as u64) as i32
+    };
+    let reach = (1.3 / voxel) as i32;
+    let mut lines = String::new();
+    for _ in 0..1000 {
+        let node = Ijk(std::array::from_fn(|_| random(2 * reach + 1) - reach));
+        let phi = brute_force(&mesh, Lattice { voxel }.world_from_index(node)) - distance;
+        let [i, j, k] = node.0;
+        writeln!(lines, "{i} {j} {k} {phi:e}").unwrap();
+    }
+    let nodes = dir.path().join("nodes.txt");
+    std::fs::write(&nodes, lines).unwrap();
+    let active = result.statistics.vdb.active_voxels.to_string();
+    let paths = [path.to_str().unwrap(), "--nodes", nodes.to_str().unwrap()];
+    let rest = ["--voxel", "0.05", "--half-width", "3", "--active", &active];
+    let arguments = [&paths[..], &rest[..]].concat();
+    if let Some(said) = python::run("python_finds_the_distances_of_brute_force", "test_vdb.py", &arguments) {
+        assert!(said.contains("1000 random nodes"), "{said}");
+    }
+}
