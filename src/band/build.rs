@@ -201,9 +201,10 @@ impl Worker<'_> {
         let background = self.settings.background();
         // Farther from the surface than any node from the centre: the sign is that of the centre.
         let one_side = centre.abs() > block.radius(lattice) * (1.0 + 1e-9);
-        for node in block.children().map(|b| b.origin) {
-            let p = DVec3::from(lattice.world_from_index(node));
-            let hit = distance.ssvh().closest_from(p, triangle);
+        let nodes = block.children().map(|b| b.origin);
+        let points = nodes.map(|node| DVec3::from(lattice.world_from_index(node)));
+        let hits = distance.ssvh().closest_to_eight(&points, triangle);
+        for ((node, p), hit) in nodes.into_iter().zip(points).zip(hits) {
             let signed = if one_side {
                 hit.distance_squared.sqrt().copysign(centre)
             } else {

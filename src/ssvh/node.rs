@@ -102,4 +102,23 @@ impl Node {
         }
         out
     }
+
+    /// The distances of eight points from the volume in `slot`, as [`distances`](Self::distances) gives for
+    /// one point from eight volumes. `x`, `y` and `z` are the points' coordinates.
+    #[inline(always)]
+    pub(super) fn distances_from(&self, slot: usize, points: &[[f32; 8]; 3]) -> [f32; 8] {
+        let at = |a: &[[f32; WIDTH]; 3]| Vec3::new(a[0][slot], a[1][slot], a[2][slot]);
+        let (centre, u, v) = (at(&self.centre), at(&self.u), at(&self.v));
+        let n = u.cross(v);
+        let (half_u, half_v, radius) = (self.half[0][slot], self.half[1][slot], self.radius[slot]);
+        let mut out = [0.0; 8];
+        for i in 0..8 {
+            let (dx, dy, dz) = (points[0][i] - centre.x, points[1][i] - centre.y, points[2][i] - centre.z);
+            let beyond_u = ((dx * u.x + dy * u.y + dz * u.z).abs() - half_u).max(0.0);
+            let beyond_v = ((dx * v.x + dy * v.y + dz * v.z).abs() - half_v).max(0.0);
+            let height = dx * n.x + dy * n.y + dz * n.z;
+            out[i] = (beyond_u * beyond_u + beyond_v * beyond_v + height * height).sqrt() - radius;
+        }
+        out
+    }
 }
