@@ -148,7 +148,9 @@ fn fit(spheres: &[Sphere], u: DVec3, v: DVec3, kind: SweptKind) -> Swept {
     // Distance of a sphere from the core's line or plane, as far as the core's extent does not matter.
     let off_core = |p: DVec3| match kind {
         SweptKind::Rectangle => (p.z - mid.z).abs(),
-        SweptKind::Line | SweptKind::Point => (p.y - mid.y).hypot(p.z - mid.z),
+        SweptKind::Line | SweptKind::Point => {
+            ((p.y - mid.y) * (p.y - mid.y) + (p.z - mid.z) * (p.z - mid.z)).sqrt()
+        }
     };
     let radius = spheres.iter().map(|&(p, r)| off_core(local(p)) + r).fold(0.0, f64::max);
     // The round end already covers sqrt(radius^2 - off^2) beyond the core, so the core can be shorter.
