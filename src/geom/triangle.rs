@@ -66,6 +66,7 @@ pub struct Eight {
 impl Eight {
     /// (p - origin) . direction for each point p.
     #[inline(always)]
+    #[allow(clippy::needless_range_loop, reason = "a lane runs through several arrays in step")]
     fn dots(&self, origin: DVec3, direction: DVec3) -> [f64; 8] {
         let mut out = [0.0; 8];
         for i in 0..8 {
@@ -129,6 +130,7 @@ impl Triangle {
     /// [`distance_squared`](Self::distance_squared) gives: the same operations in the same order, all
     /// regions computed and the right one selected, so that the lanes run side by side.
     #[inline(always)]
+    #[allow(clippy::needless_range_loop, reason = "a lane runs through several arrays in step")]
     pub fn distances_squared(&self, p: &Eight) -> [f64; 8] {
         let mut nearest = [f64::INFINITY; 8];
         // The largest of the three; negative inside all edges.
@@ -153,6 +155,7 @@ impl Triangle {
 
     /// Squared distances of eight points from an edge, as `segment` computes them for one.
     #[inline(always)]
+    #[allow(clippy::needless_range_loop, reason = "a lane runs through several arrays in step")]
     fn segment_distances(&self, side: Side, p: &Eight) -> [f64; 8] {
         let (first, second) = self.ends(side);
         let (a, b) = (self.corners[first.index()], self.corners[second.index()]);

@@ -101,6 +101,7 @@ fn improve(tree: &Ssvh, p: DVec3, mut best: Hit) -> Hit {
 /// The closest triangles to eight points. A volume matters when it is near enough to their centre to be
 /// near enough to any of them, and then when it is to one of them.
 #[multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt+popcnt"))]
+#[allow(clippy::needless_range_loop, reason = "a lane runs through several arrays in step")]
 fn improve_eight(tree: &Ssvh, points: &[DVec3; 8], guess: u32) -> [Hit; 8] {
     let lo = points.iter().copied().reduce(DVec3::min).expect("eight points");
     let hi = points.iter().copied().reduce(DVec3::max).expect("eight points");
