@@ -14,6 +14,7 @@ mod progress;
 mod resources;
 mod session;
 mod statistics;
+mod verify;
 
 use args::{Arguments, Command};
 use clap::error::ErrorKind;
@@ -58,6 +59,7 @@ fn run(arguments: Arguments, started: Instant) -> Result<(), Failure> {
         }
         Command::Offset(command) => offset::run(&command, &Session::start(&arguments.common, started)?),
         Command::Model(command) => model::run(&command, &Session::start(&arguments.common, started)?),
+        Command::Verify(command) => verify::run(&command, &Session::start(&arguments.common, started)?),
         Command::Info(command) => info::run(&command, &Session::start(&arguments.common, started)?),
     }
 }
