@@ -6,6 +6,7 @@ use crate::io::{LoadError, SaveError};
 use crate::offset::{EmptyResult, InputError, MemoryError, SettingsError};
 use crate::run::{Cancelled, ThreadError};
 use crate::vdb::VdbError;
+use crate::verify::VerifyError;
 
 /// Why an operation failed.
 #[derive(Debug, thiserror::Error)]
@@ -38,6 +39,9 @@ pub enum Error {
     /// OpenVDB failed.
     #[error(transparent)]
     Vdb(#[from] VdbError),
+    /// A verification cannot be done.
+    #[error(transparent)]
+    Verify(#[from] VerifyError),
     /// The run was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

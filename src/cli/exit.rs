@@ -4,6 +4,7 @@ use exocarp::contour::ContourError;
 use exocarp::error::Error;
 use exocarp::io::SaveProblem;
 use exocarp::vdb::VdbError;
+use exocarp::verify::VerifyError;
 use std::io::ErrorKind;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -87,8 +88,8 @@ impl<E: Into<Error>> From<E> for Failure {
 fn of(error: &Error) -> Exit {
     match error {
         Error::Cancelled(_) => Exit::Interrupted,
-        Error::Settings(_) => Exit::Usage,
-        Error::Load(_) | Error::Input(_) => Exit::Input,
+        Error::Settings(_) | Error::Verify(VerifyError::Setting { .. }) => Exit::Usage,
+        Error::Load(_) | Error::Input(_) | Error::Verify(_) => Exit::Input,
         Error::Empty(_) => Exit::Empty,
         Error::Memory(_) | Error::TooManyEdges(_) | Error::Threads(_) => Exit::Limit,
         Error::Contour(ContourError::Cancelled(_)) => Exit::Interrupted,

@@ -1,0 +1,293 @@
+//! What verification finds. Lengths are in model units unless a name says otherwise; vertex and triangle
+//! numbers are those of the file. Everything is serialisable; the field names are those of the JSON file.
+
+use serde::Serialize;
+
+/// Everything that [`verify`](super::verify) found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct VerifyReport {
+    /// Against what was judged.
+    pub judged: Judged,
+    /// Topology and intersections of OUTPUT by itself.
+    #[serde(flatten)]
+    pub soundness: Soundness,
+    /// How far OUTPUT is from the true offset surface.
+    pub distance: DistanceReport,
+    /// How far the true offset surface is from OUTPUT.
+    pub missing: MissingReport,
+    /// How much of the true offset surface's creases OUTPUT has.
+    pub creases: CreaseReport,
+    /// The wall, when it was asked for.
+    pub shell: Option<ShellReport>,
+    /// The promises that OUTPUT breaks; empty when it keeps all.
+    pub broken: Vec<Broken>,
+}
+
+impl VerifyReport {
+    /// Whether OUTPUT keeps all promises.
+    pub fn is_kept(&self) -> bool {
+        self.broken.is_empty()
+    }
+}
+
+/// What OUTPUT was judged against.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Judged {
+    /// Signed offset distance.
+    pub distance: f64,
+    /// Diagonal of INPUT's bounding box.
+    pub diagonal: f64,
+    /// Voxel size, if given.
+    pub voxel: Option<f64>,
+    /// The largest error allowed, if given.
+    pub tolerance: Option<f64>,
+    /// Area-uniform samples asked for.
+    pub samples: usize,
+    /// The seed of the samples.
+    pub seed: u64,
+}
+
+/// A length, in the three units in which offsets are compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Size {
+    /// In model units.
+    pub units: f64,
+    /// In percent of the diagonal of INPUT's bounding box.
+    pub percent_of_diagonal: f64,
+    /// In voxels, if the voxel size is known.
+    pub voxels: Option<f64>,
+}
+
+/// Statistics of a set of errors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Statistics {
+    /// Number of samples; with none, everything else is 0.
+    pub samples: usize,
+    /// Mean.
+    pub mean: Size,
+    /// Root mean square.
+    pub rms: Size,
+    /// The error that 99.9 percent of the samples do not exceed.
+    pub p999: Size,
+    /// The largest.
+    pub max: Size,
+    /// The sample with the largest error (the first of several).
+    pub max_at: Option<[f64; 3]>,
+}
+
+/// Topology and intersections.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Soundness {
+    /// How triangles, edges and vertices hang together.
+    pub topology: TopologyReport,
+    /// Triangles that meet where they should not.
+    pub intersections: IntersectionReport,
+}
+
+/// Topology after vertices at exactly the same position were made one. Nothing else is repaired.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct TopologyReport {
+    /// Vertices that a triangle uses, after welding.
+    pub vertices: usize,
+    /// Triangles in the file, bad ones included.
+    pub triangles: usize,
+    /// Undirected edges.
+    pub edges: usize,
+    /// Vertices of the file that were merged into another at the same position.
+    pub welded_vertices: usize,
+    /// Vertices of the file that no triangle uses.
+    pub unreferenced_vertices: usize,
+    /// Edges with one triangle.
+    pub border_edges: usize,
+    /// Edges with more than two triangles.
+    pub non_manifold_edges: usize,
+    /// Edges with two triangles that run along it in the same direction.
+    pub misoriented_edges: usize,
+    /// Vertices whose triangles form more than one fan.
+    pub non_manifold_vertices: usize,
+    /// Triangles without area: with two corners at one position, or all three exactly on a line. The former
+    /// have no part in edges and fans.
+    pub degenerate_triangles: usize,
+    /// Triangles with the same three corners as an earlier one, whichever way round.
+    pub duplicate_triangles: usize,
+    /// Sets of triangles joined by edges.
+    pub components: usize,
+    /// Vertices - edges + triangles, without those that have two corners at one position.
+    pub euler: i64,
+    /// The sum of the genera of all components; `None` unless closed, 2-manifold and oriented.
+    pub genus: Option<i64>,
+    /// The smallest angle of a triangle with area, in degrees.
+    pub smallest_angle: Option<f64>,
+    /// The triangle that has it.
+    pub smallest_angle_triangle: Option<u32>,
+    /// Triangles with area and an angle below one degree.
+    pub slivers: usize,
+    /// The ends of the first border edge.
+    pub first_border: Option<[[f64; 3]; 2]>,
+    /// The ends of the first edge with more than two triangles.
+    pub first_non_manifold_edge: Option<[[f64; 3]; 2]>,
+    /// The ends of the first misoriented edge.
+    pub first_misoriented: Option<[[f64; 3]; 2]>,
+    /// The first vertex with more than one fan.
+    pub first_non_manifold_vertex: Option<[f64; 3]>,
+    /// The first degenerate triangle.
+    pub first_degenerate: Option<u32>,
+    /// The first duplicate triangle.
+    pub first_duplicate: Option<u32>,
+}
+
+/// Pairs of triangles that have more in common than the vertices and edges they share. Degenerate triangles
+/// have no part in it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct IntersectionReport {
+    /// The number of pairs.
+    pub pairs: u64,
+    /// The number of pairs with overlapping boxes; all were tested.
+    pub tested: u64,
+    /// The first pairs, in ascending order.
+    pub first: Vec<IntersectingPair>,
+}
+
+/// Two triangles that intersect.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct IntersectingPair {
+    /// The triangles' numbers, ascending.
+    pub triangles: [u32; 2],
+    /// A point of both, up to rounding.
+    pub point: [f64; 3],
+}
+
+/// | |dis(p, INPUT)| - |D| | over points p of OUTPUT. For a shell, points of the sheet at INPUT's own surface
+/// are judged against distance 0, and those of walls between the sheets are left out.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DistanceReport {
+    /// Points uniform over OUTPUT's area.
+    pub surface: Statistics,
+    /// All vertices.
+    pub vertices: Statistics,
+    /// The midpoints of all edges.
+    pub edge_midpoints: Statistics,
+    /// The largest error of all.
+    pub max: Size,
+    /// Where it is.
+    pub max_at: Option<[f64; 3]>,
+    /// The share of the surface samples on the wrong side of INPUT, 0 to 1; `None` if INPUT is not closed.
+    /// Samples nearer to INPUT than |D| / 2 are not counted.
+    pub wrong_side: Option<f64>,
+    /// The errors of the surface samples by size.
+    pub histogram: Histogram,
+}
+
+/// Counts by the logarithm of the error, for charts. Bin i counts errors from 10^(first + i / per_decade) to
+/// the next, as a part of the diagonal; the first bin also those below, the last also those above.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Histogram {
+    /// Power of ten at which the first bin begins.
+    pub first: i32,
+    /// Bins per power of ten.
+    pub per_decade: u32,
+    /// Samples per bin.
+    pub counts: Vec<u64>,
+}
+
+/// Distances from points of the true offset surface to OUTPUT.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MissingReport {
+    /// From points of the true offset of faces, uniform over INPUT's area.
+    pub faces: Statistics,
+    /// From the arcs about edges: convex ones when growing, concave ones when shrinking.
+    pub edges: Statistics,
+    /// From the caps about vertices.
+    pub vertices: Statistics,
+    /// The largest distance of all.
+    pub max: Size,
+    /// Where it is.
+    pub max_at: Option<[f64; 3]>,
+    /// A point farther from OUTPUT than this counts as missing: the tolerance if given, otherwise half a
+    /// voxel, otherwise `None`.
+    pub limit: Option<f64>,
+    /// The share of all points that are missing, 0 to 1; `None` without a limit.
+    pub share: Option<f64>,
+}
+
+/// Creases of the true offset surface: points with two closest points of INPUT, traced from INPUT's concave
+/// edges when growing and from its convex ones when shrinking.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct CreaseReport {
+    /// Edges of INPUT that creases were traced from: sharper than the crease angle.
+    pub input_edges: usize,
+    /// Length of the creases.
+    pub length: f64,
+    /// Length along which OUTPUT has an edge, within `within` and nearly parallel.
+    pub present: f64,
+    /// `present / length`; `None` without creases.
+    pub share: Option<f64>,
+    /// How near the edge must be: 5% of a voxel.
+    pub within: f64,
+    /// The first point of a crease that OUTPUT has no edge along.
+    pub first_absent: Option<[f64; 3]>,
+}
+
+/// The wall of a shell: OUTPUT consists of a sheet at INPUT's own surface and one at distance |D|, perhaps
+/// with walls between them. A triangle belongs to the sheet at |D| when all its corners are farther from
+/// INPUT than |D| / 2, to the one at INPUT when none is, and to a wall otherwise. The thickness at a point of
+/// the sheet at |D| is its distance to the other sheet.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ShellReport {
+    /// The thickness that was asked for.
+    pub wanted: f64,
+    /// Triangles of the sheet at INPUT's surface.
+    pub surface_triangles: usize,
+    /// Triangles of the sheet at |D|.
+    pub offset_triangles: usize,
+    /// Triangles of walls between the sheets.
+    pub wall_triangles: usize,
+    /// The thickness; `None` unless both sheets are there.
+    pub thickness: Option<Thickness>,
+}
+
+/// Thickness of a wall over samples uniform over the area of the sheet at |D|, and its vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Thickness {
+    /// Number of samples.
+    pub samples: usize,
+    /// The smallest.
+    pub min: Size,
+    /// Mean.
+    pub mean: Size,
+    /// The largest.
+    pub max: Size,
+    /// Where the wall is thinnest.
+    pub min_at: [f64; 3],
+    /// Where it is thickest.
+    pub max_at: [f64; 3],
+}
+
+/// What an offset surface promises.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Promise {
+    /// No border edges.
+    Closed,
+    /// No edge with more than two triangles, no vertex with more than one fan.
+    Manifold,
+    /// Triangles agree on the outside.
+    Oriented,
+    /// No triangle without area.
+    NotDegenerate,
+    /// No two triangles intersect.
+    NoIntersections,
+    /// No error above the tolerance, either way.
+    Tolerance,
+    /// A shell has two sheets, nowhere thinner than wanted less the tolerance.
+    Thickness,
+}
+
+/// A promise that OUTPUT breaks.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Broken {
+    /// Which one.
+    pub promise: Promise,
+    /// How, in a few words.
+    pub how: String,
+}
