@@ -145,7 +145,12 @@ pub(super) mod ffi {
             threads: i32,
         ) -> Result<UniquePtr<FloatGrid>>;
         /// OpenVDB's `LevelSetFilter::offset`: a positive distance, in model units, erodes.
-        fn filter_offset(self: Pin<&mut FloatGrid>, distance: f32, scheme: Scheme, threads: i32) -> Result<()>;
+        fn filter_offset(
+            self: Pin<&mut FloatGrid>,
+            distance: f32,
+            scheme: Scheme,
+            threads: i32,
+        ) -> Result<()>;
         /// OpenVDB's `volumeToMesh` without adaptivity.
         fn contour(self: &FloatGrid, iso: f64, threads: i32) -> Result<UniquePtr<Polygons>>;
         fn point_count(self: &Polygons) -> usize;

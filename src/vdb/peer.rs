@@ -49,8 +49,7 @@ impl VdbLevelSet {
         band: BandWidths,
         run: &RunSettings,
     ) -> Result<Self, VdbError> {
-        let points: Vec<f32> =
-            mesh.vertices.iter().flatten().map(|x| (x / lattice.voxel) as f32).collect();
+        let points: Vec<f32> = mesh.vertices.iter().flatten().map(|x| (x / lattice.voxel) as f32).collect();
         let grid = ffi::mesh_band(
             lattice.voxel,
             &points,
