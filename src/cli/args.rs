@@ -13,9 +13,10 @@ Examples:
   exocarp offset cube.ply -d 2% -o grown.ply
   exocarp offset cube.ply -d -2% --resolution 512 -o shrunk.stl --vdb shrunk.vdb
   exocarp info shrunk.vdb
+  exocarp verify cube.ply grown.ply -d 2%
 
 Exit codes: 0 done, 1 internal error, 2 wrong use, 3 bad input, 4 the result is empty,
-5 a limit was hit (memory, size), 130 interrupted.";
+5 a limit was hit (memory, size), 6 verify found a broken promise, 130 interrupted.";
 
 const OFFSET_EXAMPLES: &str = "\
 Examples:
@@ -48,6 +49,17 @@ Examples:
   exocarp info part.stl
   exocarp info band.vdb
   exocarp info part.stl --json";
+
+const VERIFY_EXAMPLES: &str = "\
+Examples:
+  exocarp verify part.stl grown.stl -d 2%                        topology, intersections, errors
+  exocarp verify part.stl grown.stl -d 2% --voxel 0.1            errors in voxels as well
+  exocarp verify part.stl grown.stl -d 0.5 --tolerance 0.01      exit code 6 if it is off by more
+  exocarp verify part.stl hollow.stl -d -2 --shell --json v.json the wall of a hollowed part
+
+OUTPUT is judged as it is on disk, whichever program wrote it; only vertices at exactly the same position are
+made one first. Ends with exit code 6 if OUTPUT is not closed, not 2-manifold, not consistently oriented, if it
+has triangles without area or that intersect, or if an error is above --tolerance.";
 
 /// Offset surfaces of triangle meshes: closed, free of self-intersections, with sharp features, and their
 /// narrow band as OpenVDB.
@@ -93,6 +105,8 @@ pub(super) enum Command {
     Model(ModelArguments),
     /// Print what a mesh or a .vdb file holds
     Info(InfoArguments),
+    /// Judge a mesh as the offset surface of another: topology, intersections, errors, what is missing
+    Verify(VerifyArguments),
     /// Print a completion script for a shell
     #[command(hide = true)]
     Completions {
@@ -267,4 +281,41 @@ pub(super) struct InfoArguments {
     /// Print JSON
     #[arg(long)]
     pub json: bool,
+}
+
+/// `exocarp verify`.
+#[derive(Args, Debug)]
+#[command(after_help = VERIFY_EXAMPLES)]
+pub(super) struct VerifyArguments {
+    /// The mesh that was offset
+    pub input: PathBuf,
+    /// The mesh to judge
+    pub output: PathBuf,
+    /// Signed distance that OUTPUT is said to be at, in model units, or in percent of INPUT's diagonal
+    #[arg(long, short, value_name = "D", value_parser = length, allow_hyphen_values = true)]
+    pub distance: Length,
+    /// Write everything that was found as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub json: Option<PathBuf>,
+    /// Voxel size in model units, to give errors in voxels
+    #[arg(long, value_name = "H", value_parser = voxel, allow_negative_numbers = true)]
+    pub voxel: Option<f64>,
+    /// The largest error allowed, in model units or in percent of INPUT's diagonal: of OUTPUT from the true
+    /// offset surface, and the other way round
+    #[arg(long, value_name = "E", value_parser = length, allow_negative_numbers = true)]
+    pub tolerance: Option<Length>,
+    /// Samples, uniform over the area
+    #[arg(long, value_name = "N", default_value_t = exocarp::verify::DEFAULT_SAMPLES)]
+    pub samples: usize,
+    /// Seed of the samples
+    #[arg(long, value_name = "S", default_value_t = exocarp::verify::DEFAULT_SEED)]
+    pub seed: u64,
+    /// OUTPUT is a shell: INPUT's own surface and the offset surface. Measures its wall, which is to be T model
+    /// units thick [default: |D|]
+    #[arg(long, value_name = "T", num_args = 0..=1, value_parser = voxel)]
+    pub shell: Option<Option<f64>>,
+    /// INPUT's inside and outside: whether open input is accepted. Only the count of points on the wrong side
+    /// depends on it, and open input has none
+    #[arg(long, value_enum, default_value_t = Sign::Pseudonormal)]
+    pub sign: Sign,
 }

@@ -23,6 +23,8 @@ pub(super) enum Exit {
     Empty = 4,
     /// Memory, disk or a number does not suffice.
     Limit = 5,
+    /// `verify` found that a mesh breaks a promise.
+    Broken = 6,
     /// Ctrl-C, or the signal to terminate.
     Interrupted = 130,
 }

@@ -15,6 +15,7 @@ mod progress;
 mod resources;
 mod session;
 mod statistics;
+mod verify;
 
 use args::{Arguments, Command};
 use clap::error::ErrorKind;
@@ -63,6 +64,7 @@ fn run(arguments: Arguments, started: Instant) -> Result<(), Failure> {
             compare::run_worker(&command, &Session::start(&arguments.common, started)?)
         }
         Command::Model(command) => model::run(&command, &Session::start(&arguments.common, started)?),
+        Command::Verify(command) => verify::run(&command, &Session::start(&arguments.common, started)?),
         Command::Info(command) => info::run(&command, &Session::start(&arguments.common, started)?),
     }
 }

@@ -11,7 +11,7 @@
 //! [`Precision`] can hold. It is void when the mesh is moved, scaled or rounded further afterwards.
 //! Creases and corners of the surface come out where the minimiser of the error function lies in its cell;
 //! elsewhere they are blunted by less than a voxel. `tests::random` proves the promise on random lattices with
-//! an independent exact audit, 10,000 of them and some of 24^3 nodes when `EXOCARP_HEAVY=1` is set.
+//! the exact audit of [`verify`](crate::verify), 10,000 of them and some of 24^3 nodes when `EXOCARP_HEAVY=1` is set.
 //!
 //! The way, a file for each step:
 //!
@@ -134,4 +134,4 @@ fn reach(signs: &SignField, crossings: &Crossings) -> u32 {
 }
 
 #[cfg(test)]
-pub(crate) mod tests;
+mod tests;

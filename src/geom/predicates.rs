@@ -25,6 +25,23 @@ pub fn orient2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     robust::orient2d(coord(a), coord(b), coord(c))
 }
 
+/// An axis along which the triangle abc can be projected without losing its area: the first of x, y and z.
+/// `None` if and only if the corners lie exactly on a line, which they do when they do so in all three
+/// projections.
+#[inline]
+pub fn projection_axis(corners: [[f64; 3]; 3]) -> Option<usize> {
+    (0..3).find(|&axis| {
+        let [a, b, c] = corners.map(|p| project(p, axis));
+        orient2d(a, b, c) != 0.0
+    })
+}
+
+/// The point without its coordinate along `axis` (0, 1 or 2).
+#[inline]
+pub fn project(p: [f64; 3], axis: usize) -> [f64; 2] {
+    [p[(axis + 1) % 3], p[(axis + 2) % 3]]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,13 +4,13 @@
 use std::fmt;
 
 use rayon::prelude::*;
-use robust::{Coord, orient2d};
 use serde::Serialize;
 
 use super::TriMesh;
 use super::equal::{first_equal, hash};
+use crate::geom::predicates::projection_axis;
 
-/// What [`clean`] did.
+/// What [`clean`] or [`weld`] did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CleanReport {
     /// Vertices that were merged into an earlier one at the same position.
@@ -73,14 +73,8 @@ impl fmt::Display for CleanReport {
 /// When a triangle names a vertex that the mesh does not have; meshes from [`load`](crate::io::load) never do.
 pub fn clean(mesh: TriMesh) -> (TriMesh, CleanReport) {
     let TriMesh { mut vertices, mut triangles } = mesh;
-    let mut report = CleanReport::default();
-
-    let first = first_at_position(&vertices);
-    let merged = |(i, &v): (usize, &u32)| i != v as usize;
-    report.welded_vertices = first.par_iter().enumerate().filter(|&(i, v)| merged((i, v))).count();
-    if report.welded_vertices > 0 {
-        triangles.par_iter_mut().for_each(|t| *t = t.map(|v| first[v as usize]));
-    }
+    let mut report =
+        CleanReport { welded_vertices: merge_equal(&vertices, &mut triangles), ..CleanReport::default() };
 
     let before = triangles.len();
     triangles = triangles.into_par_iter().filter(|t| !is_degenerate(*t, &vertices)).collect();
@@ -91,24 +85,40 @@ pub fn clean(mesh: TriMesh) -> (TriMesh, CleanReport) {
     (TriMesh { vertices, triangles }, report)
 }
 
+/// Steps 1 and 4 of [`clean`] alone: every triangle stays, and keeps its number.
+///
+/// # Panics
+/// As [`clean`].
+pub fn weld(mesh: TriMesh) -> (TriMesh, CleanReport) {
+    let TriMesh { mut vertices, mut triangles } = mesh;
+    let welded_vertices = merge_equal(&vertices, &mut triangles);
+    let unreferenced_vertices = drop_unreferenced(&mut vertices, &mut triangles) - welded_vertices;
+    (
+        TriMesh { vertices, triangles },
+        CleanReport { welded_vertices, unreferenced_vertices, ..CleanReport::default() },
+    )
+}
+
+/// Lets triangles name the first vertex at each position. Returns how many vertices are another one again.
+fn merge_equal(vertices: &[[f64; 3]], triangles: &mut [[u32; 3]]) -> usize {
+    let first = first_at_position(vertices);
+    let merged = first.par_iter().enumerate().filter(|&(i, &v)| i != v as usize).count();
+    if merged > 0 {
+        triangles.par_iter_mut().for_each(|t| *t = t.map(|v| first[v as usize]));
+    }
+    merged
+}
+
 /// For each vertex the first one at the same position.
 fn first_at_position(vertices: &[[f64; 3]]) -> Vec<u32> {
     // Adding 0 turns -0 into 0.
     first_equal(vertices, |v| v.map(|x| (x + 0.0).to_bits()), |&key| hash(key))
 }
 
-/// Whether a triangle has exactly no area: its corners lie on a line, which they do if and only if they do
-/// so in all three projections.
+/// Whether a triangle has exactly no area.
 fn is_degenerate(t: [u32; 3], vertices: &[[f64; 3]]) -> bool {
     let [a, b, c] = t;
-    if a == b || b == c || c == a {
-        return true;
-    }
-    let corners = t.map(|v| vertices[v as usize]);
-    [(0, 1), (1, 2), (2, 0)].into_iter().all(|(u, v)| {
-        let [a, b, c] = corners.map(|p| Coord { x: p[u], y: p[v] });
-        orient2d(a, b, c) == 0.0
-    })
+    a == b || b == c || c == a || projection_axis(t.map(|v| vertices[v as usize])).is_none()
 }
 
 /// Drops triangles that are an earlier one again, whichever corner they begin with. Returns how many.

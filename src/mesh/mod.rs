@@ -7,6 +7,6 @@ mod topology;
 mod equal;
 mod tri_mesh;
 
-pub use clean::{CleanReport, clean};
+pub use clean::{CleanReport, clean, weld};
 pub use topology::{Defects, Topology};
 pub use tri_mesh::TriMesh;

@@ -1,8 +1,8 @@
 //! The whole way, against closed forms and brute force.
 
 use super::*;
-use crate::contour::tests::audit::Audit;
 use crate::mesh::{measure, shapes};
+use crate::verify::tests::audit::audit;
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -31,7 +31,7 @@ fn rotated(mut mesh: TriMesh) -> TriMesh {
 fn a_box_shrunk_is_a_box_with_exact_corners() {
     // Half-side 1 less 0.237: the faces are not on the lattice of 0.1.
     let result = offset(&shapes::cube(1), &settings(-0.237, 0.1), &run(2)).unwrap();
-    assert!(Audit::of(&result.mesh).is_clean());
+    assert!(audit(&result.mesh).is_sound());
     for n in 0..8 {
         let corner = DVec3::from([0, 1, 2].map(|a| if n >> a & 1 == 1 { 0.763 } else { -0.763 }));
         let nearest = result.mesh.vertices.iter().map(|&v| (DVec3::from(v) - corner).length());
@@ -46,7 +46,7 @@ fn a_box_shrunk_is_a_box_with_exact_corners() {
 /// Errors of volume and area of the grown cube of side 2 against Steiner's formulas.
 fn steiner_errors(r: f64, voxel: f64) -> [f64; 2] {
     let result = offset(&rotated(shapes::cube(1)), &settings(r, voxel), &run(2)).unwrap();
-    assert!(Audit::of(&result.mesh).is_clean());
+    assert!(audit(&result.mesh).is_sound());
     // Volume 8, area 24, and edges of total length 24 with a quarter turn each.
     let volume = 8.0 + 24.0 * r + 6.0 * PI * r * r + 4.0 / 3.0 * PI * r.powi(3);
     let area = 24.0 + 12.0 * PI * r + 4.0 * PI * r * r;
@@ -113,8 +113,8 @@ fn every_closed_model_gives_a_clean_mesh() {
             match offset(&mesh, &settings, &run(2)) {
                 Ok(result) => {
                     assert!(result.statistics.contour.triangles > 100, "{}", shape.name);
-                    let audit = Audit::of(&result.mesh);
-                    assert!(audit.is_clean(), "{} {fraction}: {audit:?}", shape.name);
+                    let audit = audit(&result.mesh);
+                    assert!(audit.is_sound(), "{} {fraction}: {audit:?}", shape.name);
                 }
                 Err(Error::Empty(empty)) => assert!(fraction < 0.0, "{} {fraction}: {empty}", shape.name),
                 Err(error) => panic!("{} {fraction}: {error}", shape.name),
@@ -127,7 +127,7 @@ fn every_closed_model_gives_a_clean_mesh() {
 fn zero_distance_keeps_a_box_sharp() {
     let mesh = rotated(shapes::cube(1));
     let result = offset(&mesh, &settings(0.0, 0.1), &run(2)).unwrap();
-    assert!(Audit::of(&result.mesh).is_clean());
+    assert!(audit(&result.mesh).is_sound());
     let topology = Topology::new(&mesh);
     let distance = SignedDistance::new(&mesh, &topology);
     let errors = result.mesh.vertices.iter().map(|&v| distance.at(v.into(), 0).distance.abs() / 0.1);
@@ -183,8 +183,8 @@ fn an_open_mesh_goes_ahead_by_pseudonormals_and_is_closed_at_jumps() {
     for r in [-0.1, 0.1, 0.0] {
         let settings = OffsetSettings { sign: SignMode::Pseudonormal, ..settings(r, 0.05) };
         let result = offset(&mesh, &settings, &run(2)).unwrap();
-        let audit = Audit::of(&result.mesh);
-        assert!(audit.is_clean(), "{r}: {audit:?}");
+        let audit = audit(&result.mesh);
+        assert!(audit.is_sound(), "{r}: {audit:?}");
         jumps += result.statistics.edges.sign_jumps;
     }
     assert!(jumps > 0, "the hole must have been closed somewhere");

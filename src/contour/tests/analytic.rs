@@ -1,10 +1,10 @@
 //! Surfaces with known answers.
 
-use super::audit::Audit;
 use super::fields::{Implicit, run, sample};
 use crate::contour::{ContourError, ContourSettings, Lattice, Precision, contour};
 use crate::mesh::TriMesh;
 use crate::run::RunSettings;
+use crate::verify::tests::audit::audit;
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
@@ -75,8 +75,8 @@ fn nearest(mesh: &TriMesh, p: [f64; 3]) -> f64 {
 }
 
 fn assert_clean(mesh: &TriMesh) {
-    let audit = Audit::of(mesh);
-    assert!(audit.is_clean() && audit.pairs >= mesh.triangles.len(), "{audit:?}");
+    let audit = audit(mesh);
+    assert!(audit.is_sound() && audit.intersections.tested as usize >= mesh.triangles.len(), "{audit:?}");
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! Random lattices made to be nasty, each judged by the exact audit.
 
-use super::audit::Audit;
 use super::fields::{Random, crossings, run, signs};
 use crate::band::{Axis, Ijk, SignField};
 use crate::contour::{ContourStatistics, Precision};
 use crate::edge::{Crossing, Crossings};
+use crate::verify::tests::audit::audit;
 
 /// Whether the long run was asked for.
 fn is_heavy() -> bool {
@@ -53,10 +53,10 @@ fn check(seed: u64, n: i32) -> (ContourStatistics, usize) {
     let (voxel, at, precision) = PLACES[(seed % PLACES.len() as u64) as usize];
     let corner = Ijk::new(at, 3 - at / 2, at / 3 + 5);
     let (mesh, statistics) = run(&lattice(seed, n, corner), voxel, precision, 1);
-    let audit = Audit::of(&mesh);
-    assert!(audit.is_clean(), "seed {seed}, {n}^3: {audit:?}, {statistics:?}");
+    let audit = audit(&mesh);
+    assert!(audit.is_sound(), "seed {seed}, {n}^3: {audit:?}, {statistics:?}");
     assert!(mesh.vertices.iter().flatten().all(|&x| precision.round(x) == x));
-    (statistics, audit.pairs)
+    (statistics, audit.intersections.tested as usize)
 }
 
 fn check_all(seeds: std::ops::Range<u64>, n: i32) {
@@ -100,8 +100,8 @@ fn all_masks_in_random_surroundings() {
             });
             let crossings = nasty(&mut random, &field);
             let (mesh, _) = run(&(field, crossings), 0.7, Precision::F32, 1);
-            let audit = Audit::of(&mesh);
-            assert!(audit.is_clean(), "mask {mask:#x}, round {round}: {audit:?}");
+            let audit = audit(&mesh);
+            assert!(audit.is_sound(), "mask {mask:#x}, round {round}: {audit:?}");
         }
     }
 }
@@ -122,5 +122,5 @@ fn broken_crossings_still_give_a_closed_mesh() {
         Crossing { t: bad, normal }
     });
     let (mesh, _) = run(&(field, crossings), 1.0, Precision::F32, 2);
-    assert!(Audit::of(&mesh).is_clean());
+    assert!(audit(&mesh).is_sound());
 }

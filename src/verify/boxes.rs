@@ -1,0 +1,209 @@
+//! A tree of boxes over triangles in the order of a space-filling curve: for pairs of triangles that are near
+//! each other, for those near a point, and for an order in which neighbours in space follow each other.
+//!
+//! The swept spheres of [`Ssvh`](crate::ssvh::Ssvh) fit tighter but take ten times as long to build, and
+//! touching triangles need closed boxes without slack.
+
+use crate::geom::aabb::Aabb;
+use crate::mesh::TriMesh;
+use crate::run::{Cancelled, RunSettings};
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Triangles per leaf. Fewer: more nodes to visit; more: more pairs that are compared in vain.
+const LEAF: usize = 8;
+
+/// Children per node.
+const WIDTH: usize = 8;
+
+/// Leaves that are compared with the tree between two looks at the cancel token.
+const LEAVES_PER_TASK: usize = 256;
+
+/// A closed box in f32, rounded outward.
+#[derive(Clone, Copy, Debug)]
+struct Box32 {
+    lo: [f32; 3],
+    hi: [f32; 3],
+}
+
+impl Box32 {
+    const EMPTY: Box32 = Box32 { lo: [f32::INFINITY; 3], hi: [f32::NEG_INFINITY; 3] };
+
+    fn around(points: impl IntoIterator<Item = [f64; 3]>) -> Box32 {
+        points.into_iter().fold(Box32::EMPTY, |b, p| Box32 {
+            lo: std::array::from_fn(|a| b.lo[a].min(below(p[a]))),
+            hi: std::array::from_fn(|a| b.hi[a].max(above(p[a]))),
+        })
+    }
+
+    fn with(self, other: Box32) -> Box32 {
+        Box32 {
+            lo: std::array::from_fn(|a| self.lo[a].min(other.lo[a])),
+            hi: std::array::from_fn(|a| self.hi[a].max(other.hi[a])),
+        }
+    }
+
+    #[inline(always)]
+    fn meets(&self, other: &Box32) -> bool {
+        // No short cuts: six comparisons side by side are faster than branches.
+        (self.lo[0] <= other.hi[0])
+            & (other.lo[0] <= self.hi[0])
+            & (self.lo[1] <= other.hi[1])
+            & (other.lo[1] <= self.hi[1])
+            & (self.lo[2] <= other.hi[2])
+            & (other.lo[2] <= self.hi[2])
+    }
+}
+
+/// The largest f32 not above `x`.
+fn below(x: f64) -> f32 {
+    let rounded = x as f32;
+    if f64::from(rounded) > x { rounded.next_down() } else { rounded }
+}
+
+/// The smallest f32 not below `x`.
+fn above(x: f64) -> f32 {
+    -below(-x)
+}
+
+/// The tree.
+#[derive(Debug)]
+pub(super) struct BoxTree {
+    /// Triangle numbers along the curve.
+    order: Vec<u32>,
+    /// Their boxes, in the same order.
+    boxes: Vec<Box32>,
+    /// From the leaves up to the root: box i of a level is around boxes 8 i to 8 i + 7 of the one below, or of
+    /// `boxes`.
+    levels: Vec<Vec<Box32>>,
+}
+
+impl BoxTree {
+    /// A tree over the given triangles of a mesh. Runs on the current rayon pool.
+    pub fn new(mesh: &TriMesh, triangles: impl IndexedParallelIterator<Item = u32>) -> Self {
+        let bounds = Aabb::around(mesh.vertices.iter().map(|&v| DVec3::from(v)));
+        // 21 bits per axis fill the 63 bits of a key.
+        let scale = f64::from(1 << 21) / bounds.size().max_element().max(f64::MIN_POSITIVE);
+        let mut keyed: Vec<(u64, u32)> = triangles
+            .map(|t| {
+                let [a, b, c] = mesh.corners(t as usize).map(DVec3::from);
+                let cell = ((a + b + c) / 3.0 - bounds.lo) * scale;
+                (cell.to_array().iter().fold(0, |key, &x| key << 1 | spread(x as u64)), t)
+            })
+            .collect();
+        keyed.par_sort_unstable();
+        let order: Vec<u32> = keyed.par_iter().map(|&(_, t)| t).collect();
+        let boxes: Vec<Box32> = order.par_iter().map(|&t| Box32::around(mesh.corners(t as usize))).collect();
+        let mut levels = vec![enclosing(&boxes, LEAF)];
+        while levels[levels.len() - 1].len() > 1 {
+            levels.push(enclosing(&levels[levels.len() - 1], WIDTH));
+        }
+        BoxTree { order, boxes, levels }
+    }
+
+    /// Triangle numbers in an order in which neighbours follow each other.
+    pub fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// Calls `visit` with each triangle whose box comes within `margin` of `p`.
+    pub fn near(&self, p: DVec3, margin: f64, mut visit: impl FnMut(u32)) {
+        let query = Box32::around([(p - margin).to_array(), (p + margin).to_array()]);
+        self.leaves(&query, 0, &mut Vec::new(), |leaf| {
+            for position in self.leaf(leaf) {
+                if self.boxes[position].meets(&query) {
+                    visit(self.order[position]);
+                }
+            }
+        });
+    }
+
+    /// Finds all pairs of triangles whose boxes meet. Each task has a result of its own, made by `start` and
+    /// changed by `visit`; the results are given back in the order of the curve.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn pairs<T: Send>(
+        &self,
+        run: &RunSettings,
+        start: impl Fn() -> T + Sync,
+        visit: impl Fn(&mut T, u32, u32) + Sync,
+    ) -> Result<Vec<T>, Cancelled> {
+        let leaves = self.levels[0].len();
+        (0..leaves.div_ceil(LEAVES_PER_TASK))
+            .into_par_iter()
+            .map(|task| {
+                run.check()?;
+                let (mut result, mut stack) = (start(), Vec::new());
+                let first = task * LEAVES_PER_TASK;
+                for leaf in first..(first + LEAVES_PER_TASK).min(leaves) {
+                    self.leaves(&self.levels[0][leaf], leaf, &mut stack, |other| {
+                        self.pairs_of_leaves(leaf, other, |a, b| visit(&mut result, a, b));
+                    });
+                }
+                Ok(result)
+            })
+            .collect()
+    }
+
+    fn pairs_of_leaves(&self, leaf: usize, other: usize, mut visit: impl FnMut(u32, u32)) {
+        for j in self.leaf(other) {
+            let second = &self.boxes[j];
+            if !self.levels[0][leaf].meets(second) {
+                continue;
+            }
+            let range = self.leaf(leaf);
+            for i in range.start..range.end.min(j) {
+                if self.boxes[i].meets(second) {
+                    let (a, b) = (self.order[i], self.order[j]);
+                    visit(a.min(b), a.max(b));
+                }
+            }
+        }
+    }
+
+    /// Positions of the triangles of a leaf.
+    fn leaf(&self, leaf: usize) -> std::ops::Range<usize> {
+        leaf * LEAF..((leaf + 1) * LEAF).min(self.order.len())
+    }
+
+    /// Calls `visit` with each leaf from `first` on whose box meets `query`. The stack is scratch.
+    fn leaves(
+        &self,
+        query: &Box32,
+        first: usize,
+        stack: &mut Vec<(usize, usize)>,
+        mut visit: impl FnMut(usize),
+    ) {
+        stack.clear();
+        stack.push((self.levels.len() - 1, 0));
+        while let Some((level, node)) = stack.pop() {
+            if level == 0 {
+                visit(node);
+                continue;
+            }
+            let below = &self.levels[level - 1];
+            // Leaves under a node of the level below.
+            let leaves = WIDTH.pow(level as u32 - 1);
+            for child in node * WIDTH..((node + 1) * WIDTH).min(below.len()) {
+                if (child + 1) * leaves > first && below[child].meets(query) {
+                    stack.push((level - 1, child));
+                }
+            }
+        }
+    }
+}
+
+fn enclosing(boxes: &[Box32], width: usize) -> Vec<Box32> {
+    boxes.par_chunks(width).map(|c| c.iter().fold(Box32::EMPTY, |all, &b| all.with(b))).collect()
+}
+
+/// The 21 low bits with two zeros between each.
+fn spread(x: u64) -> u64 {
+    let x = x.min((1 << 21) - 1);
+    let x = (x | x << 32) & 0x001f_0000_0000_ffff;
+    let x = (x | x << 16) & 0x001f_0000_ff00_00ff;
+    let x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
+    let x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
+    (x | x << 2) & 0x1249_2492_4924_9249
+}

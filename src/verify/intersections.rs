@@ -1,0 +1,60 @@
+//! Intersecting pairs of triangles.
+
+use super::boxes::BoxTree;
+use super::report::{IntersectingPair, IntersectionReport};
+use super::triangle_pair::meeting_point;
+use super::welded::Welded;
+use crate::run::{Cancelled, RunSettings};
+
+/// Pairs that are located. More would only fill the screen.
+const LOCATED: usize = 10;
+
+/// What one task found.
+#[derive(Default)]
+struct Found {
+    tested: u64,
+    pairs: u64,
+    /// The first pairs in ascending order, and some more.
+    first: Vec<IntersectingPair>,
+}
+
+impl Found {
+    fn add(&mut self, pair: IntersectingPair) {
+        self.pairs += 1;
+        self.first.push(pair);
+        // Bounded also when everything intersects everything.
+        if self.first.len() >= 64 * LOCATED {
+            self.keep_first();
+        }
+    }
+
+    fn keep_first(&mut self) {
+        self.first.sort_unstable_by_key(|pair| pair.triangles);
+        self.first.truncate(LOCATED);
+    }
+}
+
+/// The intersecting pairs of a mesh, from a tree over its triangles that have area.
+pub(super) fn intersections(
+    mesh: &Welded,
+    tree: &BoxTree,
+    run: &RunSettings,
+) -> Result<IntersectionReport, Cancelled> {
+    let tasks = tree.pairs(run, Found::default, |found, a, b| {
+        found.tested += 1;
+        if let Some(point) = meeting_point(&mesh.mesh, a, b) {
+            found.add(IntersectingPair { triangles: [a, b], point });
+        }
+    })?;
+    let mut all = Found::default();
+    for task in tasks {
+        all.tested += task.tested;
+        all.pairs += task.pairs;
+        all.first.extend(task.first);
+    }
+    all.keep_first();
+    for pair in &mut all.first {
+        pair.triangles = pair.triangles.map(|t| mesh.in_file(t));
+    }
+    Ok(IntersectionReport { pairs: all.pairs, tested: all.tested, first: all.first })
+}

@@ -1,0 +1,4 @@
+//! Planted defects are found, clean meshes pass, and closed forms are met.
+
+pub(crate) mod audit;
+mod pairs;
