@@ -15,7 +15,7 @@ const PITCH: f64 = 38.0;
 
 /// Horizontal bars of the engine's time, divided by phase.
 pub fn times(comparison: &Comparison) -> String {
-    bars(comparison, "Time of each method by phase", |m| {
+    bars(comparison, "Time of each method by phase", [1.0, 0.62, 0.85, 0.45], |m| {
         let mut parts: Vec<(String, f64)> = m.phases.iter().map(|p| (p.name.clone(), p.seconds)).collect();
         let rest = m.engine - parts.iter().map(|p| p.1).sum::<f64>();
         let name = if parts.is_empty() { "all in one" } else { "" };
@@ -27,17 +27,23 @@ pub fn times(comparison: &Comparison) -> String {
 /// Horizontal bars of the peak memory: what was there before the method began, and what it added.
 pub fn memory(comparison: &Comparison) -> String {
     let megabytes = |bytes: u64| bytes as f64 / 1_048_576.0;
-    bars(comparison, "Peak memory of each method", |m| {
+    bars(comparison, "Peak memory of each method", [0.4, 1.0, 1.0, 1.0], |m| {
         let peak = m.peak_memory?;
         let before = m.memory_before.unwrap_or(0).min(peak);
-        let parts = vec![("added".into(), megabytes(peak - before)), ("before".into(), megabytes(before))];
+        let parts = vec![("before".into(), megabytes(before)), ("added".into(), megabytes(peak - before))];
         Some((parts, format!("{} MB", count(megabytes(peak)))))
     })
 }
 
 type Parts = (Vec<(String, f64)>, String);
 
-fn bars(comparison: &Comparison, label: &str, parts: impl Fn(&Measurement) -> Option<Parts>) -> String {
+/// Bars in parts; neighbours differ in strength, not in hue: the hue is the method's.
+fn bars(
+    comparison: &Comparison,
+    label: &str,
+    strengths: [f64; 4],
+    parts: impl Fn(&Measurement) -> Option<Parts>,
+) -> String {
     let rows: Vec<(Method, Option<Parts>)> =
         comparison.results.iter().map(|r| (r.method, r.median.as_ref().and_then(&parts))).collect();
     let total = |parts: &Parts| parts.0.iter().map(|p| p.1).sum::<f64>();
@@ -55,8 +61,7 @@ fn bars(comparison: &Comparison, label: &str, parts: impl Fn(&Measurement) -> Op
         let mut x = LEFT;
         for (n, (name, size)) in parts.iter().enumerate() {
             let width = size * scale;
-            // Neighbours differ in strength, not in hue: the hue is the method's.
-            let opacity = [1.0, 0.62, 0.85, 0.45][n % 4];
+            let opacity = strengths[n % 4];
             svg.bar([x, y, (width - 1.0).max(0.5), BAR], method.colour(), opacity);
             // A name needs about seven pixels per letter.
             if width > 7.5 * name.len() as f64 + 8.0 {

@@ -76,8 +76,8 @@ pub fn page(
         run.check()?;
         let panels = sections::panels(spot, comparison, &distance, run).concat();
         let caption = "The true offset curve (thin, black) and each method's outline (wide, in colour, its \
-                       corners as dots) on the same plane, at the same scale; the model lies below. Where black \
-                       leaves the colour, the surface is wrong.";
+                       corners as dots) on the same plane, at the same scale, the solid below. Where black leaves the \
+                       colour, the surface is wrong.";
         let panels = format!(r#"<div class="panels">{panels}</div>"#);
         body += &figure(&format!("section-{}", k + 1), &spot.title, caption, &panels);
     }
@@ -183,11 +183,9 @@ fn renderings(
         Ok(format!(r#"{}<div class="panels">{panels}</div>"#, legend()))
     };
     let mut html = String::new();
-    let boxes = with_mesh(comparison).filter_map(|(_, mesh)| mesh.bounding_box());
-    let around = boxes.map(|b| b.map(DVec3::from)).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
-    if let Some(around) = around {
+    if let Some((_, mesh)) = with_mesh(comparison).next() {
         // Three quarters from above: most models stand along y.
-        let camera = Camera::around(around, DVec3::new(0.55, 0.4, 0.75), DVec3::Y);
+        let camera = Camera::around(mesh, DVec3::new(0.55, 0.4, 0.75), DVec3::Y);
         html += &figure(
             "whole",
             "The surfaces, coloured by their error",
@@ -235,7 +233,7 @@ fn legend() -> String {
         })
         .collect();
     format!(
-        r#"<div class="legend"><div class="ramp" style="background:linear-gradient(to right,{})"></div><div class="ticks"><span>0.001 or less</span><span>0.01</span><span>0.1</span><span>1 voxel or more</span></div></div>"#,
+        r#"<div class="legend"><div class="ramp" style="background:linear-gradient(to right,{})"></div><div class="ticks"><span>0.001 or less</span><span>0.01</span><span>0.1 voxels</span><span>1 or more</span></div></div>"#,
         stops.join(",")
     )
 }

@@ -42,15 +42,17 @@ impl Camera {
         Camera { plane: Plane::new(middle, up, towards), half }
     }
 
-    /// Sees the whole of a box from the direction `towards`, with `up` upwards.
-    pub fn around([lo, hi]: [DVec3; 2], towards: DVec3, up: DVec3) -> Camera {
-        let plane = Camera::at(lo.midpoint(hi), 1.0, towards, up).plane;
-        let corner = |k: usize| {
-            DVec3::from_array(std::array::from_fn(|a| if k >> a & 1 == 1 { hi[a] } else { lo[a] }))
-        };
-        let half = (0..8).map(|k| plane.below(corner(k)).abs().max_element()).fold(0.0, f64::max);
-        // A margin, so that the outline is not cut.
-        Camera { plane, half: 1.04 * half }
+    /// Sees the whole of a mesh from the direction `towards`, with `up` upwards.
+    pub fn around(mesh: &TriMesh, towards: DVec3, up: DVec3) -> Camera {
+        let mut plane = Camera::at(DVec3::ZERO, 1.0, towards, up).plane;
+        let seen = || mesh.vertices.iter().map(|&v| plane.below(v.into()));
+        let lo = seen().fold(DVec2::INFINITY, DVec2::min);
+        let hi = seen().fold(DVec2::NEG_INFINITY, DVec2::max);
+        // A margin, so that the outline is not cut; and some size for a mesh without vertices.
+        let half = (0.52 * (hi - lo).max_element()).max(f64::MIN_POSITIVE);
+        let middle = lo.midpoint(hi);
+        plane.origin = if middle.is_finite() { plane.at(middle) } else { DVec3::ZERO };
+        Camera { plane, half }
     }
 
     /// Where a pixel's middle lies on the picture plane.
@@ -177,10 +179,18 @@ mod tests {
     }
 
     #[test]
-    fn cameras_see_the_whole_box() {
-        let camera = Camera::around([DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)], DVec3::ONE, DVec3::Z);
-        assert!(camera.half > 1.0 && camera.half < 2.2);
+    fn cameras_see_the_whole_mesh() {
+        let mut mesh = crate::mesh::shapes::cube(2);
+        mesh.vertices.iter_mut().for_each(|v| v[0] += 10.0);
+        let camera = Camera::around(&mesh, DVec3::ONE, DVec3::Z);
+        assert!(camera.half > 1.41 && camera.half < 1.75, "{}", camera.half);
         assert!(camera.plane.normal().dot(DVec3::ONE.normalize()) > 0.999_999);
         assert!(camera.plane.up.z > 0.5);
+        let seen = raster(&mesh, &camera, 64);
+        assert!(seen.pixels[64 * 32 + 32].is_some() && seen.pixels[0].is_none());
+        assert_eq!(
+            raster(&TriMesh::default(), &Camera::around(&TriMesh::default(), DVec3::X, DVec3::Y), 4).size,
+            4
+        );
     }
 }

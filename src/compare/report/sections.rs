@@ -14,8 +14,12 @@ use std::fmt::Write;
 /// Half the width of a picture in voxels: so near that a tenth of a voxel is four pixels.
 const HALF: f64 = 3.5;
 
-/// Pixels of a picture's side.
+/// Pixels of a picture's width.
 const SIDE: f64 = 340.0;
+
+/// Pixels from the top of the square to the picture's upper and lower border: spots lie in the middle and
+/// little happens far above and below.
+const VISIBLE: [f64; 2] = [50.0, 305.0];
 
 /// One picture per method: its outline over the true curve at the spot. The plane is the same, and so is the
 /// scale.
@@ -33,8 +37,8 @@ pub fn panels(
         .map(|(method, mesh)| {
             let cut = section(mesh, &spot.plane, half);
             let worst = worst(&cut, |p| (distance.at(spot.plane.at(p), 0).distance - comparison.distance).abs());
-            let mut svg = Svg::new(SIDE, SIDE);
-            svg.bar([0.0, 0.0, SIDE, SIDE], "#fafafa", 1.0);
+            let mut svg = Svg::new(SIDE, VISIBLE[1] - VISIBLE[0]);
+            svg.bar([0.0, 0.0, SIDE, VISIBLE[1] - VISIBLE[0]], "#fafafa", 1.0);
             let colour = method.colour();
             let own = format!(
                 r#"fill="none" stroke="{colour}" stroke-width="5" stroke-linecap="round" stroke-opacity="0.75""#
@@ -71,7 +75,7 @@ fn worst(segments: &[Segment], error: impl Fn(DVec2) -> f64) -> Option<f64> {
 }
 
 fn pixels(p: DVec2, half: f64) -> DVec2 {
-    DVec2::new(p.x + half, half - p.y) * (SIDE / (2.0 * half))
+    DVec2::new(p.x + half, half - p.y) * (SIDE / (2.0 * half)) - DVec2::new(0.0, VISIBLE[0])
 }
 
 fn path(segments: &[Segment], half: f64) -> String {
@@ -84,7 +88,7 @@ fn path(segments: &[Segment], half: f64) -> String {
 
 fn scale_bar(svg: &mut Svg) {
     let voxel = SIDE / (2.0 * HALF);
-    let (x, y) = (12.0, SIDE - 14.0);
+    let (x, y) = (12.0, 28.0);
     svg.line([x, y, x + voxel, y], "scale");
     svg.text([x + 0.5 * voxel, y - 6.0], Anchor::Middle, "tick", "1 voxel");
 }

@@ -35,7 +35,7 @@ pub const RAMP_ENDS: [f64; 2] = [0.001, 1.0];
 
 /// The ramp: pale blue-grey, yellow, orange, red, black-purple. It gets darker all the way, so it reads in grey
 /// and with any colour vision.
-const RAMP: [[u8; 3]; 5] = [[226, 232, 238], [252, 214, 110], [240, 132, 50], [196, 42, 66], [52, 12, 74]];
+const RAMP: [[u8; 3]; 5] = [[236, 240, 244], [252, 214, 110], [240, 132, 50], [196, 42, 66], [52, 12, 74]];
 
 /// Samples per pixel and direction: smooth outlines and wires.
 const OVERSAMPLING: usize = 2;
@@ -101,9 +101,9 @@ fn colours(
         let [a, b, c] = mesh.corners(hit.triangle as usize).map(DVec3::from);
         let normal = (b - a).cross(c - a).try_normalize().unwrap_or(plane.normal());
         // Lambert, both sides alike, with as much from everywhere that colours stay legible in the shade.
-        let lambert = 0.45 + 0.55 * normal.dot(light).abs();
+        let lambert = 0.66 + 0.34 * normal.dot(light).abs();
         let wire = match wires {
-            Wires::Drawn if hit.edge < 0.6 * OVERSAMPLING as f64 => 0.62,
+            Wires::Drawn if hit.edge < 0.5 * OVERSAMPLING as f64 => 0.7,
             _ => 1.0,
         };
         Vec3::from(colour) * (lambert * wire) as f32
