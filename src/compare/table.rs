@@ -228,7 +228,8 @@ fn megabytes(bytes: f64) -> String {
 }
 
 fn percent(x: f64) -> String {
-    format!("{x:.1}")
+    // A sum of nothing is -0.
+    format!("{:.1}", x + 0.0)
 }
 
 /// An error in voxels: two significant digits, and never shorter than they are worth.

@@ -11,7 +11,7 @@ mod svg;
 #[cfg(test)]
 mod tests;
 
-pub use outline::outline;
+pub use outline::{Outline, outline};
 pub use plane::{Plane, Segment, section};
 pub use raster::{Camera, Frame, Hit, raster};
 pub use shade::{RAMP_ENDS, Truth, Wires, ramp, shaded};
@@ -76,9 +76,9 @@ pub fn page(
         run.check()?;
         let panels = sections::panels(spot, comparison, &distance, run).concat();
         let caption = "The true offset curve (thin, black) and each method's outline (wide, in colour, its \
-                       corners as dots) on the same plane, at the same scale, the solid below. Where black leaves the \
-                       colour, the surface is wrong.";
-        let panels = format!(r#"<div class="panels">{panels}</div>"#);
+                       corners as dots) on the same plane, at the same scale; the true solid is grey. Where black leaves \
+                       the colour, the surface is wrong.";
+        let panels = grid(comparison, &panels);
         body += &figure(&format!("section-{}", k + 1), &spot.title, caption, &panels);
     }
     body += &renderings(comparison, &distance, &spots, run)?;
@@ -180,7 +180,7 @@ fn renderings(
             let png = shaded(mesh, &truth, camera, RENDERED, wires, run)?;
             panels += &rendering(result, &png);
         }
-        Ok(format!(r#"{}<div class="panels">{panels}</div>"#, legend()))
+        Ok(legend() + &grid(comparison, &panels))
     };
     let mut html = String::new();
     if let Some((_, mesh)) = with_mesh(comparison).next() {
@@ -201,13 +201,22 @@ fn renderings(
         let camera = Camera::at(section.origin, CLOSE * comparison.voxel, towards, section.up);
         html += &figure(
             "close",
-            &format!("Close up: {}", spot.title.to_lowercase()),
+            "Close up",
             "The same spot as in the first cross-section, with the triangles' edges. A crease that is kept is a \
              clean line; one that is lost is a dark band.",
             &drawn(&camera, Wires::Drawn)?,
         );
     }
     Ok(html)
+}
+
+/// Pictures beside each other, one per method: in rows of three, or all in one row of up to four.
+fn grid(comparison: &Comparison, panels: &str) -> String {
+    let columns = match with_mesh(comparison).count() {
+        n @ 2..=4 => n,
+        _ => 3,
+    };
+    format!(r#"<div class="panels of{columns}">{panels}</div>"#)
 }
 
 fn with_mesh(comparison: &Comparison) -> impl Iterator<Item = (&MethodResult, &TriMesh)> {

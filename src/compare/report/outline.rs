@@ -13,14 +13,19 @@ const CELLS: usize = 280;
 /// Halvings and regula falsi steps for a point of the curve: far below a thousandth of a cell.
 const STEPS: usize = 8;
 
-/// The curve dis = `r` on `plane`, not farther than `half` from its origin in x or y.
-pub fn outline(
-    distance: &SignedDistance,
-    r: f64,
-    plane: &Plane,
-    half: f64,
-    run: &RunSettings,
-) -> Vec<Segment> {
+/// The true offset solid on a plane.
+#[derive(Clone, Debug)]
+pub struct Outline {
+    /// Its border: the curve where dis = r.
+    pub curve: Vec<Segment>,
+    /// Its inside, as lines along x, [`Outline::pitch`] from each other.
+    pub inside: Vec<Segment>,
+    /// The distance between those lines.
+    pub pitch: f64,
+}
+
+/// The solid dis < `r` on `plane`, not farther than `half` from its origin in x or y.
+pub fn outline(distance: &SignedDistance, r: f64, plane: &Plane, half: f64, run: &RunSettings) -> Outline {
     let step = 2.0 * half / CELLS as f64;
     let place = |i: usize, j: usize| DVec2::new(i as f64, j as f64) * step - DVec2::splat(half);
     let phi = |p: DVec2, guess: &mut u32| {
@@ -64,7 +69,18 @@ pub fn outline(
         let rows: Vec<Vec<f64>> = (0..=CELLS).into_par_iter().map(row).collect();
         let by_row: Vec<Vec<Segment>> =
             (0..CELLS).into_par_iter().map(|j| cells((j, &rows[j..j + 2]))).collect();
-        by_row.into_iter().flatten().collect()
+        let inside = rows.iter().enumerate().flat_map(|(j, row)| {
+            let mut runs = Vec::new();
+            for run in (0..=CELLS).collect::<Vec<_>>().chunk_by(|&a, &b| (row[a] < 0.0) == (row[b] < 0.0)) {
+                if let [first, .., last] = *run
+                    && row[first] < 0.0
+                {
+                    runs.push([place(first, j), place(last, j)]);
+                }
+            }
+            runs
+        });
+        Outline { inside: inside.collect(), curve: by_row.into_iter().flatten().collect(), pitch: step }
     })
 }
 
@@ -95,7 +111,10 @@ mod tests {
         let distance = SignedDistance::new(&mesh, &topology);
         let run = RunSettings::with_threads(2).unwrap();
         let plane = Plane::new(DVec3::ZERO, DVec3::Y, DVec3::Z);
-        let curve = outline(&distance, 0.5, &plane, 2.0, &run);
+        let Outline { curve, inside, pitch } = outline(&distance, 0.5, &plane, 2.0, &run);
+        let area: f64 = inside.iter().map(|[a, b]| a.distance(*b) * pitch).sum();
+        let expected = 4.0 + 4.0 + 0.25 * std::f64::consts::PI;
+        assert!((area - expected).abs() < 0.1, "{area} {expected}");
         let length: f64 = curve.iter().map(|[a, b]| a.distance(*b)).sum();
         let expected = 8.0 + std::f64::consts::PI;
         assert!((length - expected).abs() < 1e-3, "{length} {expected}");

@@ -19,7 +19,7 @@ const SIDE: f64 = 340.0;
 
 /// Pixels from the top of the square to the picture's upper and lower border: spots lie in the middle and
 /// little happens far above and below.
-const VISIBLE: [f64; 2] = [50.0, 305.0];
+const VISIBLE: [f64; 2] = [28.0, 312.0];
 
 /// One picture per method: its outline over the true curve at the spot. The plane is the same, and so is the
 /// scale.
@@ -38,13 +38,15 @@ pub fn panels(
             let cut = section(mesh, &spot.plane, half);
             let worst = worst(&cut, |p| (distance.at(spot.plane.at(p), 0).distance - comparison.distance).abs());
             let mut svg = Svg::new(SIDE, VISIBLE[1] - VISIBLE[0]);
-            svg.bar([0.0, 0.0, SIDE, VISIBLE[1] - VISIBLE[0]], "#fafafa", 1.0);
+            svg.bar([0.0, 0.0, SIDE, VISIBLE[1] - VISIBLE[0]], "#ffffff", 1.0);
             let colour = method.colour();
             let own = format!(
                 r#"fill="none" stroke="{colour}" stroke-width="5" stroke-linecap="round" stroke-opacity="0.75""#
             );
+            let solid = format!(r##"stroke="#e9edf1" stroke-width="{:.2}""##, 1.3 * truth.pitch * SIDE / (2.0 * half));
+            svg.path(&path(&truth.inside, half), &solid);
             svg.path(&path(&cut, half), &own);
-            svg.path(&path(&truth, half), r##"fill="none" stroke="#111" stroke-width="1.5""##);
+            svg.path(&path(&truth.curve, half), r##"fill="none" stroke="#111" stroke-width="1.5""##);
             for corner in cut.iter().map(|s| pixels(s[0], half)) {
                 let dot = format!("M{:.1} {:.1}h0", corner.x, corner.y);
                 svg.path(&dot, &format!(r#"stroke="{colour}" stroke-width="7" stroke-linecap="round""#));

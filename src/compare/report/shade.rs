@@ -101,7 +101,7 @@ fn colours(
         let [a, b, c] = mesh.corners(hit.triangle as usize).map(DVec3::from);
         let normal = (b - a).cross(c - a).try_normalize().unwrap_or(plane.normal());
         // Lambert, both sides alike, with as much from everywhere that colours stay legible in the shade.
-        let lambert = 0.66 + 0.34 * normal.dot(light).abs();
+        let lambert = 0.7 + 0.3 * normal.dot(light).abs();
         let wire = match wires {
             Wires::Drawn if hit.edge < 0.5 * OVERSAMPLING as f64 => 0.7,
             _ => 1.0,

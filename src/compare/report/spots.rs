@@ -15,6 +15,8 @@ pub struct Spot {
     pub title: String,
     /// The section plane, its origin at the spot, up being away from the model.
     pub plane: Plane,
+    /// The number of methods that are worst here.
+    pub worst: usize,
 }
 
 /// Spots nearer than this many voxels show the same thing.
@@ -29,14 +31,21 @@ pub fn spots(comparison: &Comparison, distance: &SignedDistance, run: &RunSettin
     let mut spots: Vec<Spot> = Vec::new();
     let meshes = comparison.results.iter().filter_map(|m| m.mesh.as_ref());
     if let Some(at) = meshes.take(1).find_map(|mesh| crease(mesh, distance, run)) {
-        spots.push(Spot { title: "The sharpest crease".into(), plane: plane(at, distance, r, h) });
+        spots.push(Spot { title: "The sharpest crease".into(), plane: plane(at, distance, r, h), worst: 0 });
     }
     for result in &comparison.results {
         let Some(quality) = &result.quality else { continue };
         let Some(at) = quality.distance.max_at.map(DVec3::from) else { continue };
-        if spots.len() < MOST && spots.iter().all(|s| s.plane.origin.distance(at) > SAME * h) {
-            let title = format!("Where {} is worst", result.method.title());
-            spots.push(Spot { title, plane: plane(at, distance, r, h) });
+        let same = |s: &&mut Spot| s.plane.origin.distance(at) <= SAME * h;
+        if let Some(spot) = spots.iter_mut().find(same) {
+            spot.title += &match spot.worst {
+                0 => format!(", and where {} is worst", result.method.title()),
+                _ => format!(" and {}", result.method.title()),
+            };
+            spot.worst += 1;
+        } else if spots.len() < MOST {
+            let title = format!("The worst spot of {}", result.method.title());
+            spots.push(Spot { title, plane: plane(at, distance, r, h), worst: 1 });
         }
     }
     spots
