@@ -90,7 +90,8 @@ fn path(segments: &[Segment], half: f64) -> String {
 
 fn scale_bar(svg: &mut Svg) {
     let voxel = SIDE / (2.0 * HALF);
-    let (x, y) = (12.0, 28.0);
+    // Below the middle, within the solid: the curve passes through the middle and leaves at the borders.
+    let (x, y) = (0.5 * (SIDE - voxel), VISIBLE[1] - VISIBLE[0] - 14.0);
     svg.line([x, y, x + voxel, y], "scale");
     svg.text([x + 0.5 * voxel, y - 6.0], Anchor::Middle, "tick", "1 voxel");
 }
