@@ -44,7 +44,7 @@ fn compile(openvdb: &OpenVdb) {
         build.flag(format!("-isystem{}", openvdb.include.display()));
     }
     build
-        .files(["cpp/grid.cc", "cpp/check.cc", "cpp/read.cc", "cpp/write.cc"])
+        .files(["cpp/grid.cc", "cpp/check.cc", "cpp/peer.cc", "cpp/read.cc", "cpp/write.cc"])
         .std(standard)
         .flag_if_supported("-Wno-deprecated-declarations")
         // Also in dev builds: the level-set checks are templates, a hundred times slower without it.

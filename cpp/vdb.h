@@ -12,6 +12,7 @@ namespace exocarp::vdb {
 // Shared with Rust; defined by the generated header.
 enum class Codec : std::uint8_t;
 enum class Depth : std::uint8_t;
+enum class Scheme : std::uint8_t;
 struct Contents;
 struct Counts;
 struct MetaItem;
@@ -20,6 +21,24 @@ struct Placement;
 // OpenVDB's grid; defined in grid.h.
 template <class T>
 struct Held;
+
+// The polygons of a contoured grid; defined in peer.cc.
+struct HeldPolygons;
+class Polygons {
+public:
+    explicit Polygons(std::shared_ptr<HeldPolygons> held);
+
+    std::size_t point_count() const;
+    std::size_t triangle_count() const;
+    std::size_t quad_count() const;
+    void read(
+        rust::Slice<float> points,
+        rust::Slice<std::uint32_t> triangles,
+        rust::Slice<std::uint32_t> quads) const;
+
+private:
+    std::shared_ptr<HeldPolygons> mHeld;
+};
 
 // What grids of all value types can do.
 template <class T>
@@ -57,6 +76,8 @@ public:
     Placement placement() const;
     rust::String check(std::uint8_t test, std::int32_t threads) const;
     std::unique_ptr<FloatGrid> half_copy(float background) const;
+    void filter_offset(float distance, Scheme scheme, std::int32_t threads);
+    std::unique_ptr<Polygons> contour(double iso, std::int32_t threads) const;
 };
 
 class Int32Grid : public LeafGrid<std::int32_t> {
@@ -66,6 +87,14 @@ public:
 
 std::unique_ptr<FloatGrid> new_float_grid(double voxel, float background, rust::Str creator);
 std::unique_ptr<Int32Grid> new_int32_grid(double voxel, rust::Str creator);
+
+std::unique_ptr<FloatGrid> mesh_band(
+    double voxel,
+    rust::Slice<const float> points,
+    rust::Slice<const std::uint32_t> triangles,
+    float exterior,
+    float interior,
+    std::int32_t threads);
 
 void write_file(
     rust::Slice<const std::uint8_t> path,

@@ -1,5 +1,6 @@
 //! The one error of the public API; each stage's own error is a variant.
 
+use crate::compare::CompareError;
 use crate::contour::ContourError;
 use crate::edge::TooManyEdges;
 use crate::io::{LoadError, SaveError};
@@ -42,10 +43,22 @@ pub enum Error {
     /// A verification cannot be done.
     #[error(transparent)]
     Verify(#[from] VerifyError),
+    /// A comparison could not be made.
+    #[error(transparent)]
+    Compare(CompareError),
     /// The run was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// The worker threads could not be started.
     #[error(transparent)]
     Threads(#[from] ThreadError),
+}
+
+impl From<CompareError> for Error {
+    fn from(error: CompareError) -> Self {
+        match error {
+            CompareError::Cancelled => Error::Cancelled(Cancelled),
+            other => Error::Compare(other),
+        }
+    }
 }

@@ -16,6 +16,7 @@ pub mod edge;
 pub mod contour;
 pub mod offset;
 pub mod verify;
+pub mod compare;
 
 /// The README's example runs as a test.
 #[cfg(doctest)]

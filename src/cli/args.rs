@@ -2,6 +2,7 @@
 
 use super::numbers::{bytes, length, resolution, voxel};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use exocarp::compare::Method;
 use exocarp::offset::{Length, SignMode};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -27,6 +28,15 @@ Examples:
 
 Lengths are in model units (those of the input file); percentages are of the diagonal of the input's
 bounding box. Formats by extension, in and out: .obj .ply .stl .off";
+
+const COMPARE_EXAMPLES: &str = "\
+Examples:
+  exocarp compare part.stl -d 2%
+  exocarp compare part.stl -d -2% --resolution 512 --report out --json out/figures.json
+  exocarp compare part.stl -d 2% --methods exocarp,openvdb-wide --runs 1
+  exocarp compare part.stl -d 2% --python venv/bin/python        an interpreter with meshlib
+
+Methods: exocarp, openvdb-wide, openvdb-first, openvdb-weno5, meshlib-standard, meshlib-sharp.";
 
 const MODEL_EXAMPLES: &str = "\
 Examples:
@@ -86,6 +96,11 @@ pub(super) struct Common {
 pub(super) enum Command {
     /// Offset a mesh: the closed surface at a signed distance from it
     Offset(OffsetArguments),
+    /// Make the same offset with OpenVDB and MeshLib, and compare times, memory and errors
+    Compare(CompareArguments),
+    /// One run of one method, for `compare`
+    #[command(hide = true, name = exocarp::compare::WORKER)]
+    Worker(WorkerArguments),
     /// Write a generated model; without a name, list them
     Model(ModelArguments),
     /// Print what a mesh or a .vdb file holds
@@ -141,6 +156,63 @@ pub(super) struct OffsetArguments {
     /// Write settings, times and counts as JSON
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
+}
+
+/// `exocarp compare`.
+#[derive(Args, Debug)]
+#[command(after_help = COMPARE_EXAMPLES)]
+pub(super) struct CompareArguments {
+    /// The mesh to offset, closed
+    pub input: PathBuf,
+    /// Signed distance in model units, or in percent of the input's diagonal: positive grows, negative
+    /// shrinks
+    #[arg(long, short, value_name = "D", value_parser = length, allow_hyphen_values = true)]
+    pub distance: Length,
+    /// Voxel size in model units
+    #[arg(long, value_name = "H", value_parser = voxel, allow_negative_numbers = true)]
+    #[arg(conflicts_with = "resolution")]
+    pub voxel: Option<f64>,
+    /// Voxels along the longest side of the result's bounding box [default: 256]
+    #[arg(long, value_name = "N", value_parser = resolution, allow_negative_numbers = true)]
+    pub resolution: Option<u32>,
+    /// Runs per method; times are medians
+    #[arg(long, value_name = "R", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub runs: u32,
+    /// Seconds after which a run is given up
+    #[arg(long, value_name = "S", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=86_400))]
+    pub timeout: u64,
+    /// The Python interpreter that can import meshlib; without the package, MeshLib is left out
+    #[arg(long, value_name = "PY", default_value = "python3")]
+    pub python: PathBuf,
+    /// Write a page with charts and pictures into this directory, as index.html
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
+    /// Write everything measured as JSON
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// The methods, with commas between them [default: all]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = method)]
+    pub methods: Vec<Method>,
+}
+
+/// A method by its name.
+fn method(name: &str) -> Result<Method, String> {
+    Method::by_name(name).ok_or_else(|| {
+        let names: Vec<&str> = Method::ALL.iter().map(|m| m.name()).collect();
+        format!("the methods are {}", names.join(", "))
+    })
+}
+
+/// One run of one method: what `exocarp::compare::worker_arguments` makes.
+#[derive(Args, Debug)]
+pub(super) struct WorkerArguments {
+    #[arg(value_parser = method)]
+    pub method: Method,
+    pub input: PathBuf,
+    #[arg(allow_hyphen_values = true)]
+    pub distance: f64,
+    pub voxel: f64,
+    pub output: PathBuf,
 }
 
 /// `--sign`.

@@ -4,6 +4,7 @@
 //! sentence on stderr, results one line on stdout.
 
 mod args;
+mod compare;
 mod exit;
 mod info;
 mod model;
@@ -58,6 +59,10 @@ fn run(arguments: Arguments, started: Instant) -> Result<(), Failure> {
             Ok(())
         }
         Command::Offset(command) => offset::run(&command, &Session::start(&arguments.common, started)?),
+        Command::Compare(command) => compare::run(&command, &Session::start(&arguments.common, started)?),
+        Command::Worker(command) => {
+            compare::run_worker(&command, &Session::start(&arguments.common, started)?)
+        }
         Command::Model(command) => model::run(&command, &Session::start(&arguments.common, started)?),
         Command::Verify(command) => verify::run(&command, &Session::start(&arguments.common, started)?),
         Command::Info(command) => info::run(&command, &Session::start(&arguments.common, started)?),

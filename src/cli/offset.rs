@@ -19,7 +19,7 @@ use std::path::Path;
 const STORED_HALF_WIDTH: f64 = 3.0;
 
 /// The usual resolution: fine enough to see the features, a second or so of work.
-const DEFAULT_RESOLUTION: u32 = 256;
+pub(super) const DEFAULT_RESOLUTION: u32 = 256;
 
 pub(super) fn run(arguments: &OffsetArguments, session: &Session) -> Result<(), Failure> {
     check_outputs(arguments)?;

@@ -75,6 +75,14 @@ pub(super) mod ffi {
         grids: Vec<GridEntry>,
     }
 
+    /// The schemes of OpenVDB's level-set offset.
+    enum Scheme {
+        /// First-order upwind differences, forward Euler.
+        First,
+        /// Fifth-order WENO, third-order Runge-Kutta.
+        Weno5,
+    }
+
     // Every function takes references and slices that outlive the call and keeps none of them, and
     // the C++ side checks every length before it touches a slice.
     unsafe extern "C++" {
@@ -124,6 +132,32 @@ pub(super) mod ffi {
 
         /// A copy with another background whose values survive rounding to half floats.
         fn half_copy(self: &FloatGrid, background: f32) -> Result<UniquePtr<FloatGrid>>;
+
+        /// Polygons in world space.
+        type Polygons;
+        /// OpenVDB's `meshToVolume`: `points` in index space, the widths of the band in voxels.
+        fn mesh_band(
+            voxel: f64,
+            points: &[f32],
+            triangles: &[u32],
+            exterior: f32,
+            interior: f32,
+            threads: i32,
+        ) -> Result<UniquePtr<FloatGrid>>;
+        /// OpenVDB's `LevelSetFilter::offset`: a positive distance, in model units, erodes.
+        fn filter_offset(
+            self: Pin<&mut FloatGrid>,
+            distance: f32,
+            scheme: Scheme,
+            threads: i32,
+        ) -> Result<()>;
+        /// OpenVDB's `volumeToMesh` without adaptivity.
+        fn contour(self: &FloatGrid, iso: f64, threads: i32) -> Result<UniquePtr<Polygons>>;
+        fn point_count(self: &Polygons) -> usize;
+        fn triangle_count(self: &Polygons) -> usize;
+        fn quad_count(self: &Polygons) -> usize;
+        /// Copies everything out.
+        fn read(self: &Polygons, points: &mut [f32], triangles: &mut [u32], quads: &mut [u32]) -> Result<()>;
 
         /// Writes one or two grids (`closest` may be null).
         fn write_file(

@@ -25,6 +25,7 @@ mod file;
 mod grid;
 mod info;
 mod leaves;
+mod peer;
 mod stamp;
 
 pub use error::VdbError;
@@ -33,3 +34,4 @@ pub use file::{
 };
 pub use grid::{Band, ClosestGrid, SurfaceGrid};
 pub use info::{FileInfo, GridInfo, info};
+pub use peer::{BandWidths, Polygons, Scheme, VdbLevelSet};

@@ -1,0 +1,118 @@
+//! `exocarp compare`: the same offset with other programs; and the hidden command that does one run of it.
+
+use super::args::{CompareArguments, WorkerArguments};
+use super::exit::{Exit, Failure, of_io};
+use super::offset::{DEFAULT_RESOLUTION, load_mesh};
+use super::outputs;
+use super::session::{Session, Verbosity, print};
+use exocarp::compare::{
+    CompareSettings, Comparison, Event, Job, Method, Programs, compare, report, text, work,
+};
+use exocarp::offset::VoxelSize;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// The page's name in the directory of the report.
+const PAGE: &str = "index.html";
+
+pub(super) fn run(arguments: &CompareArguments, session: &Session) -> Result<(), Failure> {
+    let page = arguments.report.as_ref().map(|directory| directory.join(PAGE));
+    if let Some(directory) = &arguments.report {
+        std::fs::create_dir_all(directory).map_err(|error| {
+            Failure::usage(format!("{} cannot be made a directory ({error})", directory.display()))
+        })?;
+    }
+    outputs::check([&page, &arguments.json].into_iter().flatten().map(PathBuf::as_path))?;
+
+    let (loaded, _) = load_mesh(&arguments.input, session)?;
+    let mut watch = |event: Event| tell(&event, session);
+    let comparison =
+        compare(&loaded.mesh, &settings(arguments), &programs(arguments)?, &session.run, &mut watch)?;
+    for note in &comparison.notes {
+        session.warn(note);
+    }
+    if let Some(path) = &arguments.json {
+        let json = serde_json::to_string_pretty(&comparison)
+            .map_err(|error| Failure::new(Exit::Internal, error.to_string()))?;
+        write(path, &(json + "\n"), session)?;
+    }
+    if let Some(path) = &page {
+        if session.verbosity == Verbosity::Verbose {
+            session.tell("drawing the report");
+        }
+        let title = arguments.input.file_name().unwrap_or_default().to_string_lossy();
+        write(path, &report::page(&comparison, &loaded.mesh, &title, &session.run)?, session)?;
+    }
+    session.staging.commit()?;
+    session.tell(&text(&comparison));
+    if let Some(path) = &page {
+        session.tell(&format!("{}: the table, charts and pictures", path.display()));
+    }
+    check(&comparison)
+}
+
+fn settings(arguments: &CompareArguments) -> CompareSettings {
+    let voxel = match arguments.voxel {
+        Some(h) => VoxelSize::Units(h),
+        None => VoxelSize::Resolution(arguments.resolution.unwrap_or(DEFAULT_RESOLUTION)),
+    };
+    let mut methods: Vec<Method> = Vec::new();
+    for method in &arguments.methods {
+        if !methods.contains(method) {
+            methods.push(*method);
+        }
+    }
+    CompareSettings {
+        distance: arguments.distance,
+        voxel,
+        methods: if methods.is_empty() { Method::ALL.into() } else { methods },
+        runs: arguments.runs,
+        limit: Duration::from_secs(arguments.timeout),
+    }
+}
+
+fn programs(arguments: &CompareArguments) -> Result<Programs, Failure> {
+    let worker = std::env::current_exe().map_err(|error| {
+        Failure::new(Exit::Internal, format!("this program cannot find itself to start runs ({error})"))
+    })?;
+    Ok(Programs { worker, python: arguments.python.clone() })
+}
+
+fn tell(event: &Event, session: &Session) {
+    match event {
+        Event::Lost(method, lost) => session.warn(&format!("{}: {lost}", method.title())),
+        _ if session.verbosity < Verbosity::Verbose => {}
+        Event::Begin(run, method) => session.tell(&format!("run {run}: {}", method.title())),
+        Event::Measured(m) => session.tell(&format!("  {:.2} s", m.engine)),
+        Event::Judging(method) => session.tell(&format!("judging {}", method.title())),
+    }
+}
+
+fn write(path: &Path, content: &str, session: &Session) -> Result<(), Failure> {
+    let staged = session.staging.stage(path)?;
+    std::fs::write(staged, content).map_err(|error| {
+        Failure::new(of_io(&error), format!("{} cannot be written ({error})", path.display()))
+    })
+}
+
+/// Nothing to compare is a failure, one peer less is none.
+fn check(comparison: &Comparison) -> Result<(), Failure> {
+    match comparison.results.iter().any(|r| r.median.is_some()) {
+        true => Ok(()),
+        false => Err(Failure::new(Exit::Internal, "no method finished; the table says why")),
+    }
+}
+
+/// One run of one method, in this process.
+pub(super) fn run_worker(arguments: &WorkerArguments, session: &Session) -> Result<(), Failure> {
+    let job = Job {
+        method: arguments.method,
+        input: arguments.input.clone(),
+        distance: arguments.distance,
+        voxel: arguments.voxel,
+        output: arguments.output.clone(),
+    };
+    let line = work(&job, &session.run)?.to_line();
+    print(&line.map_err(|error| Failure::new(Exit::Internal, error.to_string()))?);
+    Ok(())
+}

@@ -1,0 +1,272 @@
+//! The same offset, on the same lattice, with this library and with what else there is: OpenVDB and MeshLib.
+//!
+//! ```text
+//!  INPUT -> clean -> a process per run and method -> PLY and a line of JSON -> medians
+//!                                                 -> verify                 -> table, report
+//! ```
+//!
+//! Every method gets the same cleaned mesh, the same distance, the same voxel size and the same number of
+//! threads. Each run has a process of its own, so that its memory is its own; the methods take turns, so that
+//! a slow minute of the machine hits all of them; times are medians. `engine` is wall time from the mesh in
+//! memory to the offset surface in memory: reading and writing files is not compared, nor is starting up.
+//!
+//! Promised: a method that crashes, fails or runs out of time is said to have done so, and the others go on;
+//! all outputs are judged by the same [`verify`](crate::verify), which knows nothing of who made them. Not
+//! promised: that the peers' memory is all theirs; a Python interpreter is in MeshLib's. What a process held
+//! before the method began is measured, too.
+
+mod machine;
+mod measurement;
+mod method;
+mod process;
+pub mod report;
+mod table;
+mod worker;
+
+pub use machine::machine;
+pub use measurement::{Measurement, PhaseTime, median, peak_memory};
+pub use method::{Method, Needs};
+pub use process::{Lost, Programs, WORKER, measure, probe_meshlib, worker_arguments};
+pub use table::{Column, Row, rows, text};
+pub use worker::{Job, work};
+
+use crate::error::Error;
+use crate::io::{self, Coordinates, SaveOptions};
+use crate::mesh::{Topology, TriMesh};
+use crate::offset::{InputError, Length, OffsetSettings, VoxelSize};
+use crate::run::RunSettings;
+use crate::verify::{VerifyReport, VerifySettings, verify};
+use serde::Serialize;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// What to compare.
+#[derive(Clone, Debug)]
+pub struct CompareSettings {
+    /// Signed distance: positive grows.
+    pub distance: Length,
+    /// Voxel size, for all methods.
+    pub voxel: VoxelSize,
+    /// The methods, in the order of the table.
+    pub methods: Vec<Method>,
+    /// Runs per method, at least 1.
+    pub runs: u32,
+    /// The time that a run may take.
+    pub limit: Duration,
+}
+
+impl Default for CompareSettings {
+    fn default() -> Self {
+        CompareSettings {
+            distance: Length::OfDiagonal(0.02),
+            voxel: VoxelSize::Resolution(256),
+            methods: Method::ALL.into(),
+            // The least that has a median which one slow run does not move.
+            runs: 3,
+            // Ten times what the slowest peer takes at resolution 512.
+            limit: Duration::from_secs(600),
+        }
+    }
+}
+
+/// What came of a comparison.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    /// Triangles of the cleaned input.
+    pub input_triangles: usize,
+    /// Diagonal of its bounding box.
+    pub diagonal: f64,
+    /// Signed distance in model units.
+    pub distance: f64,
+    /// Voxel size in model units.
+    pub voxel: f64,
+    /// Threads of every method.
+    pub threads: usize,
+    /// Runs per method.
+    pub runs: u32,
+    /// The machine: cores and family of the processor.
+    pub machine: String,
+    /// What each method did, in the order asked for.
+    pub results: Vec<MethodResult>,
+    /// Sentences about what was left out.
+    pub notes: Vec<String>,
+}
+
+/// What one method did.
+#[derive(Clone, Debug, Serialize)]
+pub struct MethodResult {
+    /// The method.
+    pub method: Method,
+    /// The medians of its runs; `None` when none succeeded.
+    pub median: Option<Measurement>,
+    /// All runs that succeeded.
+    pub runs: Vec<Measurement>,
+    /// Why a run failed, after which there were no more.
+    pub lost: Option<Lost>,
+    /// What its last output is worth.
+    pub quality: Option<VerifyReport>,
+    /// Its last output.
+    #[serde(skip)]
+    pub mesh: Option<TriMesh>,
+}
+
+/// Why there is no comparison.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CompareError {
+    /// A program could not be started.
+    #[error("{} cannot be started: {source}", program.display())]
+    Start {
+        /// The program.
+        program: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// No directory for the intermediate files.
+    #[error("there is no room for temporary files: {0}")]
+    Temporary(std::io::Error),
+    /// The method runs in Python, not in this program.
+    #[error("{} runs in Python, not in this program", .0.title())]
+    NotHere(Method),
+    /// A picture could not be encoded.
+    #[error("a picture could not be encoded: {0}")]
+    Picture(String),
+    /// A setting makes no sense.
+    #[error("{0}")]
+    Setting(&'static str),
+    /// The run was cancelled.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+/// What is happening, for those who wait.
+#[derive(Clone, Debug)]
+pub enum Event<'a> {
+    /// A run begins: its number, from 1, and the method.
+    Begin(u32, Method),
+    /// A run ended.
+    Measured(&'a Measurement),
+    /// A run was lost.
+    Lost(Method, &'a Lost),
+    /// The output of a method is being judged.
+    Judging(Method),
+}
+
+/// Compares the methods on `mesh`, which has been cleaned. `watch` is told what happens.
+///
+/// # Errors
+/// - [`Error::Settings`], [`Error::Input`]: as for an offset; the mesh must be closed.
+/// - [`Error::Compare`]: processes cannot be started, no temporary files.
+/// - [`Error::Cancelled`].
+///
+/// A method that fails is no error: its [`MethodResult::lost`] says why.
+pub fn compare(
+    mesh: &TriMesh,
+    settings: &CompareSettings,
+    programs: &Programs,
+    run: &RunSettings,
+    watch: &mut dyn FnMut(Event),
+) -> Result<Comparison, Error> {
+    let mut comparison = prepare(mesh, settings, run)?;
+    let methods = available(&settings.methods, programs, run, &mut comparison.notes)?;
+    let directory = tempfile::tempdir().map_err(CompareError::Temporary)?;
+    let input = directory.path().join("input.ply");
+    io::save(mesh, &input, &SaveOptions { coordinates: Coordinates::F64 })?;
+    let output = |method: Method| directory.path().join(format!("{}.ply", method.name()));
+    comparison.results = methods.into_iter().map(MethodResult::new).collect();
+
+    for number in 1..=settings.runs {
+        for result in comparison.results.iter_mut().filter(|r| r.lost.is_none()) {
+            let method = result.method;
+            watch(Event::Begin(number, method));
+            let (distance, voxel) = (comparison.distance, comparison.voxel);
+            let job = Job { method, input: input.clone(), distance, voxel, output: output(method) };
+            match measure(&job, programs, settings.limit, run)? {
+                Ok(measurement) => {
+                    watch(Event::Measured(&measurement));
+                    result.runs.push(measurement);
+                }
+                Err(lost) => {
+                    watch(Event::Lost(method, &lost));
+                    result.lost = Some(lost);
+                }
+            }
+        }
+    }
+    for result in &mut comparison.results {
+        result.median = Measurement::median(&result.runs);
+        if result.median.is_none() {
+            continue;
+        }
+        watch(Event::Judging(result.method));
+        match io::load(&output(result.method)) {
+            Ok(mesh) => result.mesh = Some(mesh),
+            Err(error) => result.lost = Some(Lost::Failed(error.problem.to_string())),
+        }
+        if let Some(output) = &result.mesh {
+            let voxel = Some(comparison.voxel);
+            let distance = Length::Units(comparison.distance);
+            let settings = VerifySettings { distance, voxel, ..VerifySettings::default() };
+            result.quality = Some(verify(mesh, output, &settings, run)?);
+        }
+    }
+    Ok(comparison)
+}
+
+impl MethodResult {
+    fn new(method: Method) -> Self {
+        MethodResult { method, median: None, runs: Vec::new(), lost: None, quality: None, mesh: None }
+    }
+}
+
+/// Checks what can be checked, and the numbers that hold for all methods.
+fn prepare(mesh: &TriMesh, settings: &CompareSettings, run: &RunSettings) -> Result<Comparison, Error> {
+    if settings.runs == 0 || settings.methods.is_empty() {
+        return Err(CompareError::Setting("there is nothing to compare: name a method and a run").into());
+    }
+    if mesh.triangles.is_empty() {
+        return Err(InputError::NoTriangles.into());
+    }
+    let defects = *run.install(|| Topology::new(mesh)).defects();
+    let ends = |edge: [u32; 2]| edge.map(|v| mesh.vertices[v as usize]);
+    if let Some(first) = defects.first_boundary {
+        return Err(InputError::Open { count: defects.boundary_edges, first: ends(first) }.into());
+    }
+    if let Some(first) = defects.first_misoriented {
+        return Err(InputError::Misoriented { count: defects.misoriented_edges, first: ends(first) }.into());
+    }
+    let offset = OffsetSettings { distance: settings.distance, voxel: settings.voxel, ..Default::default() };
+    let resolved = offset.resolve(mesh)?;
+    let [lo, hi] = mesh.bounding_box().unwrap_or_default();
+    Ok(Comparison {
+        input_triangles: mesh.triangles.len(),
+        diagonal: glam::DVec3::from(lo).distance(hi.into()),
+        distance: resolved.r,
+        voxel: resolved.lattice.voxel,
+        threads: run.threads(),
+        runs: settings.runs,
+        machine: machine(),
+        results: Vec::new(),
+        notes: Vec::new(),
+    })
+}
+
+/// The methods that can run here; a note says what cannot.
+fn available(
+    methods: &[Method],
+    programs: &Programs,
+    run: &RunSettings,
+    notes: &mut Vec<String>,
+) -> Result<Vec<Method>, CompareError> {
+    let mut methods = methods.to_vec();
+    if methods.iter().any(|m| m.needs() == Needs::Meshlib)
+        && let Err(sentence) = probe_meshlib(&programs.python, run)?
+    {
+        notes.push(sentence);
+        methods.retain(|m| m.needs() != Needs::Meshlib);
+    }
+    match methods.is_empty() {
+        true => Err(CompareError::Setting("there is nothing to compare: the package meshlib is not there")),
+        false => Ok(methods),
+    }
+}
