@@ -15,6 +15,7 @@ pub mod vdb;
 pub mod edge;
 pub mod contour;
 pub mod offset;
+pub mod paper;
 
 /// The README's example runs as a test.
 #[cfg(doctest)]

@@ -10,6 +10,7 @@ mod model;
 mod numbers;
 mod offset;
 mod outputs;
+mod paper;
 mod progress;
 mod resources;
 mod session;
@@ -58,6 +59,7 @@ fn run(arguments: Arguments, started: Instant) -> Result<(), Failure> {
         }
         Command::Offset(command) => offset::run(&command, &Session::start(&arguments.common, started)?),
         Command::Model(command) => model::run(&command, &Session::start(&arguments.common, started)?),
+        Command::Paper(command) => paper::run(&command, &Session::start(&arguments.common, started)?),
         Command::Info(command) => info::run(&command, &Session::start(&arguments.common, started)?),
     }
 }

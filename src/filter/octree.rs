@@ -77,7 +77,7 @@ impl Filter<'_> {
         for child in block.children() {
             let sample = self.distance.at(child.centre(self.lattice), triangle);
             let phi = sample.distance - self.r;
-            if phi.abs() > self.reach(child) {
+            if self.clearance(sample.distance) > self.reach(child) {
                 statistics.octree_queries_invalid += 1;
                 visit(child, uniform(phi));
                 continue;
@@ -88,6 +88,17 @@ impl Filter<'_> {
             } else {
                 visit(child, Verdict::Kept { triangle: sample.triangle, distance: sample.distance });
             }
+        }
+    }
+
+    /// How far a block's centre is from the surface that the octree filter looks for; without the signed
+    /// distance filter, from the nearer one of the two at distance abs(r), as the counts of the paper's
+    /// BB + OT have it.
+    #[inline]
+    fn clearance(&self, signed: f64) -> f64 {
+        match self.settings.signed_distance {
+            Switch::On => (signed - self.r).abs(),
+            Switch::Off => (signed.abs() - self.r.abs()).abs(),
         }
     }
 

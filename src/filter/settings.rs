@@ -45,7 +45,7 @@ pub struct FilterSettings {
     pub side: BoxSide,
     /// The bounding box filter.
     pub bounding_box: Switch,
-    /// The signed distance filter.
+    /// The signed distance filter. Without it the octree filter, too, goes by unsigned distances.
     pub signed_distance: Switch,
     /// The octree filter.
     pub octree: Switch,
