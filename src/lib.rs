@@ -17,6 +17,7 @@ pub mod contour;
 pub mod offset;
 pub mod verify;
 pub mod compare;
+pub mod paper;
 
 /// The README's example runs as a test.
 #[cfg(doctest)]

@@ -54,7 +54,7 @@ fn wrong_use_is_exit_2_and_one_sentence() {
     ] {
         offset(rest).fails_with(2);
     }
-    exocarp(&["paper"]).fails_with(2);
+    exocarp(&["paper", "--table", "8"]).fails_with(2);
     exocarp(&["model", "teapot", "-o", &output]).fails_with(2);
     exocarp(&["model", "box"]).fails_with(2);
     assert_eq!(names(dir.path()), ["in.ply"]);

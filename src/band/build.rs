@@ -2,7 +2,7 @@
 
 use super::LeafBatch;
 use crate::distance::SignedDistance;
-use crate::filter::{Block, Filter, FilterStatistics, Verdict};
+use crate::filter::{Block, BoxSide, Filter, FilterSettings, FilterStatistics, Switch, Verdict};
 use crate::geom::aabb::Aabb;
 use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, Lattice};
 use crate::run::{Cancelled, Phase, RunSettings};
@@ -39,6 +39,12 @@ pub fn grid_nodes(bounds: Aabb, settings: &BandSettings) -> [Ijk; 2] {
 /// octree starts higher and there are fewer tasks to share out among the threads.
 const BOXES_ALONG_AXIS: i32 = 8;
 
+/// Nodes nearer to the offset surface than this, in voxels, are on it, and so outside. A face of the offset
+/// often lies in a plane of nodes (with a resolution instead of a voxel size, a model centred at the origin
+/// always has one there). Rounding would give these nodes signs at random, and the surface would zigzag
+/// between two layers of cells. Far below the tolerance of edge intersections.
+const ON_SURFACE: f64 = 1e-9;
+
 /// Bounding boxes worked off together; the leaves of two such batches are in memory at a time.
 const BOXES_PER_BATCH: usize = 64;
 
@@ -50,18 +56,27 @@ pub fn build<E: From<Cancelled> + Send>(
     distance: &SignedDistance,
     settings: &BandSettings,
     run: &RunSettings,
+    sink: impl FnMut(LeafBatch) -> Result<(), E> + Send,
+) -> Result<FilterStatistics, E> {
+    build_filtered(distance, settings, &FilterSettings::default(), run, sink)
+}
+
+/// The same as [`build`] with some filters off, or other bounding boxes. Leaves and their values are the
+/// same for closed input; only the blocks between the leaves are cut differently.
+///
+/// # Errors
+/// Cancellation, or what `sink` returns.
+///
+/// # Panics
+/// When `filters` are not valid.
+pub fn build_filtered<E: From<Cancelled> + Send>(
+    distance: &SignedDistance,
+    settings: &BandSettings,
+    filters: &FilterSettings,
+    run: &RunSettings,
     mut sink: impl FnMut(LeafBatch) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
-    let bounds = Aabb::around(distance.mesh().vertices.iter().map(|&v| DVec3::from(v)));
-    let grid = grid_nodes(bounds, settings);
-    let boxes = bounding_boxes(grid);
-    let mut statistics = FilterStatistics { nodes_total: node_count(grid), ..Default::default() };
-    let filter = Filter {
-        distance,
-        lattice: settings.lattice,
-        r: settings.r,
-        half_width: f64::from(settings.background()),
-    };
+    let Plan { filter, boxes, mut statistics } = Plan::new(distance, settings, filters);
     let worker = Worker { filter, settings: *settings };
     let phase = run.phase(Phase::Band, boxes.len() as u64);
     run.install(|| {
@@ -84,16 +99,49 @@ pub fn build<E: From<Cancelled> + Send>(
     })
 }
 
+/// The work of a band: which boxes to go through with which filters.
+pub(super) struct Plan<'a> {
+    pub(super) filter: Filter<'a>,
+    pub(super) boxes: Vec<Block>,
+    /// Holds the nodes of the grid.
+    pub(super) statistics: FilterStatistics,
+}
+
+impl<'a> Plan<'a> {
+    /// # Panics
+    /// When `filters` are not valid.
+    pub(super) fn new(
+        distance: &'a SignedDistance<'a>,
+        settings: &BandSettings,
+        filters: &FilterSettings,
+    ) -> Self {
+        filters.validate().expect("valid filter settings");
+        let bounds = Aabb::around(distance.mesh().vertices.iter().map(|&v| DVec3::from(v)));
+        let grid = grid_nodes(bounds, settings);
+        let filter = Filter {
+            distance,
+            lattice: settings.lattice,
+            r: settings.r,
+            half_width: f64::from(settings.background()),
+            settings: *filters,
+        };
+        let statistics = FilterStatistics { nodes_total: node_count(grid), ..Default::default() };
+        Plan { filter, boxes: bounding_boxes(grid, filters.side), statistics }
+    }
+}
+
 fn node_count([lo, hi]: [Ijk; 2]) -> u64 {
     (hi - lo).0.map(|n| n as u64 + 1).iter().product()
 }
 
 /// The bounding boxes that cover the grid, in lexicographic order.
-fn bounding_boxes([lo, hi]: [Ijk; 2]) -> Vec<Block> {
+fn bounding_boxes([lo, hi]: [Ijk; 2], side: BoxSide) -> Vec<Block> {
     let longest = (hi - lo).0.into_iter().max().expect("three axes") + 1;
-    let side = (longest / BOXES_ALONG_AXIS).max(2 * LEAF_DIM);
-    // The power of two at or below.
-    let side = 1 << side.ilog2();
+    let side = match side {
+        // The power of two at or below.
+        BoxSide::Automatic => 1 << (longest / BOXES_ALONG_AXIS).max(2 * LEAF_DIM).ilog2(),
+        BoxSide::PowerOfTwo(n) => 1 << n,
+    };
     let first = lo.0.map(|i| i.div_euclid(side));
     let last = hi.0.map(|i| i.div_euclid(side));
     let mut boxes = Vec::new();
@@ -142,6 +190,13 @@ impl Worker<'_> {
         match self.filter.bounding_box(block, &mut statistics) {
             Verdict::Outside => {}
             Verdict::Inside => batch.inside_blocks.push((block.origin, block.side)),
+            Verdict::Kept { triangle, .. } if self.filter.settings.octree == Switch::Off => {
+                for origin in block.leaves() {
+                    self.whole_leaf(origin, triangle, &mut batch, &mut statistics);
+                }
+            }
+            // A box of a single leaf has no smaller ones above the leaf's own.
+            Verdict::Kept { triangle, .. } if block.side == LEAF_DIM => kept.push((block.origin, triangle)),
             Verdict::Kept { triangle, .. } => {
                 self.filter.octree(block, triangle, LEAF_DIM, &mut statistics, &mut |block, verdict| {
                     match verdict {
@@ -158,9 +213,9 @@ impl Worker<'_> {
         (batch, statistics)
     }
 
-    /// Evaluates the leaf at `origin` and appends it, unless no node of it is active.
+    /// Evaluates the leaf at `origin` through the octree filter and appends it.
     fn leaf(&self, origin: Ijk, triangle: u32, batch: &mut LeafBatch, statistics: &mut FilterStatistics) {
-        let mut leaf = Leaf { values: [0.0; LEAF_SIZE], active: [0; 8], closest: [-1; LEAF_SIZE] };
+        let mut leaf = Leaf::new();
         let background = self.settings.background();
         let mut kept: [(Ijk, u32, f64); 64] = [(Ijk::default(), 0, 0.0); 64];
         let mut kept_count = 0;
@@ -176,16 +231,30 @@ impl Worker<'_> {
         for &(origin, triangle, distance) in &kept[..kept_count] {
             self.nodes(Block { origin, side: 2 }, triangle, distance, &mut leaf, statistics);
         }
-        let uniform = || leaf.values.iter().all(|v| v.signum() == leaf.values[0].signum());
-        if leaf.active.iter().any(|&word| word != 0) || !uniform() {
-            batch.origins.push(origin);
-            batch.values.extend_from_slice(&leaf.values);
-            batch.active.push(leaf.active);
-            batch.closest.extend_from_slice(&leaf.closest);
-        } else if leaf.values[0] < 0.0 {
-            // Without active nodes there is no sign change, unless the input is not closed.
-            batch.inside_blocks.push((origin, LEAF_DIM));
+        leaf.finish(origin, batch);
+    }
+
+    /// Evaluates every node of the leaf at `origin`: what is left to do without the octree filter.
+    fn whole_leaf(
+        &self,
+        origin: Ijk,
+        triangle: u32,
+        batch: &mut LeafBatch,
+        statistics: &mut FilterStatistics,
+    ) {
+        let mut leaf = Leaf::new();
+        for number in (0..LEAF_SIZE).filter(|n| n & 0b001_001_001 == 0) {
+            let block = Block { origin: Ijk::in_leaf(origin, number), side: 2 };
+            // A centre on the surface decides no sign.
+            self.nodes(block, triangle, 0.0, &mut leaf, statistics);
         }
+        leaf.finish(origin, batch);
+    }
+
+    /// `phi` at `p`, or 0 where it is so close to 0 that only rounding gives it a sign.
+    fn settled(&self, phi: f64, p: DVec3) -> f64 {
+        let rounding = 4.0 * f64::EPSILON * (p.abs().max_element() + self.settings.r.abs());
+        if phi.abs() <= ON_SURFACE * self.settings.lattice.voxel + rounding { 0.0 } else { phi }
     }
 
     /// Evaluates the eight nodes of a block of side 2 whose centre has the signed distance `centre`.
@@ -201,15 +270,16 @@ impl Worker<'_> {
         let background = self.settings.background();
         // Farther from the surface than any node from the centre: the sign is that of the centre.
         let one_side = centre.abs() > block.radius(lattice) * (1.0 + 1e-9);
-        for node in block.children().map(|b| b.origin) {
-            let p = DVec3::from(lattice.world_from_index(node));
-            let hit = distance.ssvh().closest_from(p, triangle);
+        let nodes = block.children().map(|b| b.origin);
+        let points = nodes.map(|node| DVec3::from(lattice.world_from_index(node)));
+        let hits = distance.ssvh().closest_to_eight(&points, triangle);
+        for ((node, p), hit) in nodes.into_iter().zip(points).zip(hits) {
             let signed = if one_side {
                 hit.distance_squared.sqrt().copysign(centre)
             } else {
                 distance.from_triangle(p, hit.triangle).distance
             };
-            let phi = signed - r;
+            let phi = self.settled(signed - r, p);
             statistics.node_queries += 1;
             statistics.valid_nodes += u64::from(phi.abs() <= lattice.voxel);
             let number = node.number_in_leaf();
@@ -238,6 +308,24 @@ struct Leaf {
 }
 
 impl Leaf {
+    fn new() -> Self {
+        Leaf { values: [0.0; LEAF_SIZE], active: [0; 8], closest: [-1; LEAF_SIZE] }
+    }
+
+    /// Appends the leaf at `origin` to `batch`, unless no node of it is active.
+    fn finish(&self, origin: Ijk, batch: &mut LeafBatch) {
+        let uniform = || self.values.iter().all(|v| v.signum() == self.values[0].signum());
+        if self.active.iter().any(|&word| word != 0) || !uniform() {
+            batch.origins.push(origin);
+            batch.values.extend_from_slice(&self.values);
+            batch.active.push(self.active);
+            batch.closest.extend_from_slice(&self.closest);
+        } else if self.values[0] < 0.0 {
+            // Without active nodes there is no sign change, unless the input is not closed.
+            batch.inside_blocks.push((origin, LEAF_DIM));
+        }
+    }
+
     fn fill(&mut self, block: Block, value: f32) {
         let first = block.origin.number_in_leaf();
         let side = block.side as usize;

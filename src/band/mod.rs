@@ -1,6 +1,7 @@
 //! The narrow band around the offset surface (\[LW11\] section IV).
 
 mod build;
+mod count;
 mod jumps;
 mod leaves;
 mod signs;
@@ -8,7 +9,8 @@ mod signs;
 mod tests;
 
 pub use crate::lattice::{Axis, Ijk, LEAF_DIM, LEAF_SIZE, Lattice};
-pub use build::{BandSettings, build, grid_nodes};
+pub use build::{BandSettings, build, build_filtered, grid_nodes};
+pub use count::count_queries;
 pub use jumps::leaves_at_jumps;
 pub use leaves::{LeafBatch, inside_mask};
 pub use signs::{LeafId, LeafMask, SignField};

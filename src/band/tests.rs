@@ -1,5 +1,6 @@
 use super::*;
 use crate::distance::SignedDistance;
+use crate::filter::{BoxSide, FilterSettings, Switch};
 use crate::mesh::{Topology, TriMesh};
 use crate::run::{Cancelled, RunSettings};
 use std::collections::HashMap;
@@ -114,4 +115,113 @@ fn cancelling_stops_the_band() {
     run.cancel_token().cancel();
     let settings = BandSettings { lattice: Lattice { voxel: 0.05 }, r: 0.2, half_width: 1.0 };
     assert_eq!(build(&distance, &settings, &run, |_| Ok::<_, Cancelled>(())), Err(Cancelled));
+}
+
+#[test]
+fn nodes_on_the_offset_surface_are_outside_whatever_rounding_says() {
+    let mesh = crate::mesh::shapes::cube(1);
+    let topology = Topology::new(&mesh);
+    let distance = SignedDistance::new(&mesh, &topology);
+    let lattice = Lattice { voxel: 0.1 };
+    // Faces at 1 + 0.3, where 13 * 0.1 is a node; and at 1 - 0.3, where 7 * 0.1 is not 0.7 in f64.
+    for (r, plane) in [(0.3, 13), (-0.3, 7)] {
+        let settings = BandSettings { lattice, r, half_width: 1.0 };
+        let run = RunSettings::with_threads(1).unwrap();
+        let (mut on_plane, mut values) = (0, Vec::new());
+        build(&distance, &settings, &run, |batch| {
+            for (leaf, &origin) in batch.origins.iter().enumerate() {
+                for n in 0..LEAF_SIZE {
+                    let [i, j, k] = Ijk::in_leaf(origin, n).0;
+                    if i.abs() == plane && j.abs() < 6 && k.abs() < 6 {
+                        on_plane += 1;
+                        values.push(batch.values[leaf * LEAF_SIZE + n]);
+                    }
+                }
+            }
+            Ok::<_, Cancelled>(())
+        })
+        .unwrap();
+        assert_eq!(on_plane, 2 * 11 * 11);
+        assert!(values.iter().all(|&v| v == f32::MIN_POSITIVE), "{r}: {values:?}");
+    }
+}
+
+/// Every choice of filters, with boxes of 8 to 32 cells.
+fn all_filters() -> Vec<FilterSettings> {
+    let switches = [Switch::On, Switch::Off];
+    let mut all = Vec::new();
+    for side in [BoxSide::Automatic, BoxSide::PowerOfTwo(3), BoxSide::PowerOfTwo(5)] {
+        for bounding_box in switches {
+            for signed_distance in switches {
+                for octree in switches {
+                    all.push(FilterSettings { side, bounding_box, signed_distance, octree });
+                }
+            }
+        }
+    }
+    all
+}
+
+#[test]
+fn the_band_does_not_depend_on_the_filters() {
+    let mesh = octahedron();
+    let topology = Topology::new(&mesh);
+    let distance = SignedDistance::new(&mesh, &topology);
+    let run = RunSettings::with_threads(2).unwrap();
+    for (r, half_width) in [(0.3, 1.0), (-0.2, 3.0), (0.0, 1.0)] {
+        let settings = BandSettings { lattice: Lattice { voxel: 0.09 }, r, half_width };
+        // Leaves by origin: batches come in the order of the boxes.
+        let leaves = |filters: &FilterSettings| {
+            let mut leaves = std::collections::BTreeMap::new();
+            let mut inside = std::collections::BTreeSet::new();
+            let counts = build_filtered(&distance, &settings, filters, &run, |batch| {
+                for (n, &origin) in batch.origins.iter().enumerate() {
+                    let part = 512 * n..512 * (n + 1);
+                    let values = batch.values[part.clone()].to_vec();
+                    let leaf = (values, batch.active[n], batch.closest[part].to_vec());
+                    assert!(leaves.insert(origin, leaf).is_none(), "{origin:?} comes twice");
+                }
+                for &(origin, side) in &batch.inside_blocks {
+                    inside.extend(crate::filter::Block { origin, side }.leaves());
+                }
+                Ok::<_, Cancelled>(())
+            });
+            (leaves, inside, counts.unwrap())
+        };
+        let (expected, inside, _) = leaves(&FilterSettings::default());
+        assert!(expected.len() > 20, "{}", expected.len());
+        for filters in all_filters() {
+            let (found, found_inside, mut counts) = leaves(&filters);
+            assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>(), "{filters:?}");
+            assert!(found == expected, "{filters:?}");
+            assert_eq!(found_inside, inside, "{filters:?}");
+            let counted = count_queries(&distance, &settings, &filters, &run).unwrap();
+            assert!(counts.valid_nodes > 500);
+            counts.valid_nodes = 0;
+            assert_eq!(counted, counts, "{filters:?}");
+        }
+    }
+}
+
+#[test]
+fn each_filter_saves_distance_computations() {
+    let mesh = octahedron();
+    let topology = Topology::new(&mesh);
+    let distance = SignedDistance::new(&mesh, &topology);
+    let run = RunSettings::with_threads(2).unwrap();
+    let settings = BandSettings { lattice: Lattice { voxel: 0.02 }, r: 0.3, half_width: 1.0 };
+    let count = |signed_distance, octree, n| {
+        let side = BoxSide::PowerOfTwo(n);
+        let filters = FilterSettings { side, signed_distance, octree, ..FilterSettings::default() };
+        count_queries(&distance, &settings, &filters, &run).unwrap().distance_computations()
+    };
+    use Switch::{Off, On};
+    for n in 3..7 {
+        let [bb, sd, ot, all] = [(Off, Off), (On, Off), (Off, On), (On, On)].map(|(s, o)| count(s, o, n));
+        assert!(all <= ot && ot < bb && all < sd && sd <= bb, "2^{n}: {bb} {sd} {ot} {all}");
+    }
+    let none =
+        FilterSettings { bounding_box: Off, signed_distance: Off, octree: Off, side: BoxSide::PowerOfTwo(4) };
+    let brute = count_queries(&distance, &settings, &none, &run).unwrap();
+    assert!(brute.node_queries >= brute.nodes_total && count(Off, Off, 4) < brute.node_queries);
 }

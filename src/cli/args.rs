@@ -61,6 +61,16 @@ OUTPUT is judged as it is on disk, whichever program wrote it; only vertices at 
 made one first. Ends with exit code 6 if OUTPUT is not closed, not 2-manifold, not consistently oriented, if it
 has triangles without area or that intersect, or if an error is above --tolerance.";
 
+const PAPER_EXAMPLES: &str = "\
+Examples:
+  exocarp paper --table 1                            generated models, 513^3 nodes as in the paper
+  exocarp paper --table 4 --models meshes            models by name: fandisk, armadillo, rocker-arm, ...
+  exocarp paper --resolution 128 --json tables.json  all tables, a quick look
+
+The paper: Liu and Wang, Fast intersection-free offset surface generation from freeform models with
+triangular meshes, IEEE T-ASE 8(2), 2011. Most of its models are not public; each table says what stands
+for them.";
+
 /// Offset surfaces of triangle meshes: closed, free of self-intersections, with sharp features, and their
 /// narrow band as OpenVDB.
 #[derive(Debug, Parser)]
@@ -107,6 +117,8 @@ pub(super) enum Command {
     Info(InfoArguments),
     /// Judge a mesh as the offset surface of another: topology, intersections, errors, what is missing
     Verify(VerifyArguments),
+    /// Print the tables of the method's paper, measured here, beside the published figures
+    Paper(PaperArguments),
     /// Print a completion script for a shell
     #[command(hide = true)]
     Completions {
@@ -270,6 +282,26 @@ pub(super) struct ModelArguments {
     /// Write PLY with 64-bit coordinates
     #[arg(long)]
     pub f64: bool,
+}
+
+/// `exocarp paper`.
+#[derive(Args, Debug)]
+#[command(after_help = PAPER_EXAMPLES)]
+pub(super) struct PaperArguments {
+    /// The table's number, 1 to 7 [default: all]
+    #[arg(long, value_name = "1..7", value_parser = clap::value_parser!(u32).range(1..=7))]
+    pub table: Option<u32>,
+    /// A directory with the models; what is not in it is generated
+    #[arg(long, value_name = "DIR")]
+    pub models: Option<PathBuf>,
+    /// Cells along the longest side, where the paper has 512
+    #[arg(long, value_name = "N", default_value_t = exocarp::paper::PUBLISHED_RESOLUTION)]
+    // Finer than the paper by four is the most that a table is of use for.
+    #[arg(value_parser = clap::value_parser!(u32).range(8..=2048))]
+    pub resolution: u32,
+    /// Write the tables as JSON, too
+    #[arg(long, value_name = "FILE.json")]
+    pub json: Option<PathBuf>,
 }
 
 /// `exocarp info`.

@@ -11,6 +11,7 @@ mod model;
 mod numbers;
 mod offset;
 mod outputs;
+mod paper;
 mod progress;
 mod resources;
 mod session;
@@ -65,6 +66,7 @@ fn run(arguments: Arguments, started: Instant) -> Result<(), Failure> {
         }
         Command::Model(command) => model::run(&command, &Session::start(&arguments.common, started)?),
         Command::Verify(command) => verify::run(&command, &Session::start(&arguments.common, started)?),
+        Command::Paper(command) => paper::run(&command, &Session::start(&arguments.common, started)?),
         Command::Info(command) => info::run(&command, &Session::start(&arguments.common, started)?),
     }
 }

@@ -23,6 +23,7 @@
 //! | `cells`, `qef`, `region`, `vertex` | the vertex of each sheet within its cell and its walls |
 //! | `face_vertex` | vertices on faces where a connection would get in another sheet's way |
 //! | `envelope`, `polygonize` | convex/concave analysis, and the triangles around an edge |
+//! | `polygon_edges`, `cut_times` | the test that this analysis replaces, and the time of both |
 //!
 //! Why it holds: inside a cell lie the cones from its vertices over the triangles that crossed edges span with
 //! the points where connections pass the cell's faces. On a face these triangles do not overlap, walls
@@ -30,11 +31,13 @@
 
 mod cell;
 mod cells;
+mod cut_times;
 mod envelope;
 mod face_vertex;
 mod grid;
 mod numbering;
 mod output;
+mod polygon_edges;
 mod polygonize;
 mod qef;
 mod region;
@@ -42,7 +45,9 @@ mod sheets;
 mod statistics;
 mod vertex;
 
+pub use cut_times::{CutTimes, cut_times};
 pub use grid::Precision;
+pub use polygonize::CutMethod;
 pub use statistics::ContourStatistics;
 
 use crate::band::{Lattice, SignField};
@@ -58,6 +63,8 @@ use numbering::CellNumbers;
 pub struct ContourSettings {
     /// The coordinates of the result.
     pub precision: Precision,
+    /// How the triangles around an edge are chosen.
+    pub cut: CutMethod,
 }
 
 /// Why [`contour`] failed.
@@ -117,7 +124,7 @@ pub fn contour(
         let mut faces = face_vertex::face_vertices(&cells, &vertices, run)?;
         vertices.append(&mut faces.positions);
         statistics.face_vertices = vertices.len() as u64 - u64::from(numbers.vertices());
-        let (mesh, polygons) = output::triangulate(&cells, &faces, vertices, &phase)?;
+        let (mesh, polygons) = output::triangulate(&cells, &faces, vertices, settings.cut, &phase)?;
         statistics += polygons;
         statistics.vertices = mesh.vertices.len() as u64;
         statistics.triangles = mesh.triangles.len() as u64;

@@ -4,7 +4,7 @@ use super::cell::Edge;
 use super::cells::{Cells, split};
 use super::envelope::Envelope;
 use super::face_vertex::FaceVertices;
-use super::polygonize::{Cut, EDGE_VERTEX, Polygon, PolygonCorner, Tangent, polygonize};
+use super::polygonize::{Cut, CutMethod, EDGE_VERTEX, Polygon, PolygonCorner, Tangent, polygonize};
 use super::{ContourError, ContourStatistics, TooManyVertices};
 use crate::band::{Axis, Ijk, LeafId};
 use crate::edge::EdgeId;
@@ -30,6 +30,7 @@ pub fn triangulate(
     cells: &Cells<'_>,
     faces: &FaceVertices,
     mut vertices: Vec<[f64; 3]>,
+    method: CutMethod,
     phase: &PhaseGuard<'_>,
 ) -> Result<(TriMesh, ContourStatistics), ContourError> {
     let leaves: Vec<LeafId> = cells.signs.leaves().collect();
@@ -38,7 +39,7 @@ pub fn triangulate(
         .with_min_len(16)
         .map(|&leaf| {
             phase.advance(1)?;
-            Ok(in_leaf(cells, faces, &vertices, leaf))
+            Ok(in_leaf(cells, faces, &vertices, method, leaf))
         })
         .collect::<Result<_, Cancelled>>()?;
 
@@ -72,14 +73,62 @@ pub fn triangulate(
     Ok((TriMesh { vertices, triangles }, statistics))
 }
 
-fn in_leaf(cells: &Cells<'_>, faces: &FaceVertices, vertices: &[[f64; 3]], leaf: LeafId) -> LeafOutput {
+fn in_leaf(
+    cells: &Cells<'_>,
+    faces: &FaceVertices,
+    vertices: &[[f64; 3]],
+    method: CutMethod,
+    leaf: LeafId,
+) -> LeafOutput {
+    let count = cells.crossings.numbers.range(leaf).len();
+    let mut output = LeafOutput { triangles: Vec::with_capacity(2 * count), ..LeafOutput::default() };
+    let grid = &cells.grid;
+    for_polygons(cells, faces, vertices, leaf, |EdgePolygon { polygon, envelope, tangent, node, along }| {
+        let first = output.triangles.len();
+        if polygonize(&polygon, &envelope, &tangent, method, &mut output.triangles) == Cut::Split {
+            let vertex = (vertices.len() + output.edge_vertices.len()) as u32;
+            for corner in output.triangles[first..].as_flattened_mut() {
+                if *corner == EDGE_VERTEX {
+                    *corner = vertex;
+                }
+            }
+            let (axis, t) = along;
+            output.edge_vertices.push(grid.between_walls(node, on_axis(axis, grid.clamp(t))));
+        }
+        output.quads += 1;
+    });
+    output
+}
+
+/// The polygon around a crossed edge, and what decides how it is cut.
+#[derive(Clone, Copy, Debug)]
+pub struct EdgePolygon {
+    /// The cell and face vertices around the edge.
+    pub polygon: Polygon,
+    /// The edge's envelope.
+    pub envelope: Envelope,
+    /// The surface at the crossing.
+    pub tangent: Tangent,
+    /// The edge's lower node.
+    node: Ijk,
+    /// The crossing, in voxels from that node.
+    along: (Axis, f64),
+}
+
+/// Hands the polygons around the crossed edges that start in `leaf` to `visit`, in the order of the edges.
+#[inline]
+pub fn for_polygons(
+    cells: &Cells<'_>,
+    faces: &FaceVertices,
+    vertices: &[[f64; 3]],
+    leaf: LeafId,
+    mut visit: impl FnMut(EdgePolygon),
+) {
     let numbers = &cells.crossings.numbers;
-    let edges = numbers.range(leaf);
-    let mut output = LeafOutput { triangles: Vec::with_capacity(2 * edges.len()), ..LeafOutput::default() };
     let grid = &cells.grid;
     let inside = cells.signs.inside(leaf);
     let origin = cells.signs.origin(leaf);
-    for (id, (axis, number)) in edges.map(EdgeId).zip(numbers.in_leaf(leaf)) {
+    for (id, (axis, number)) in numbers.range(leaf).map(EdgeId).zip(numbers.in_leaf(leaf)) {
         let local = Ijk::in_leaf(Ijk::default(), number);
         let node = origin + local;
         let low_is_inside = inside[number >> 6] >> (number & 63) & 1 == 1;
@@ -91,23 +140,17 @@ fn in_leaf(cells: &Cells<'_>, faces: &FaceVertices, vertices: &[[f64; 3]], leaf:
         };
         let polygon = polygon(cells, faces, vertices, leaf, local, axis, outside);
         let sample = cells.crossings.sample(id);
-        let mut along = [0.0; 3];
-        along[axis as usize] = sample.t;
-        let tangent = Tangent::new(grid.ideal(node, along), sample.normal.map(f64::from), grid.voxel());
-        let first = output.triangles.len();
-        if polygonize(&polygon, &envelope, &tangent, &mut output.triangles) == Cut::Split {
-            let vertex = (vertices.len() + output.edge_vertices.len()) as u32;
-            for corner in output.triangles[first..].as_flattened_mut() {
-                if *corner == EDGE_VERTEX {
-                    *corner = vertex;
-                }
-            }
-            along[axis as usize] = grid.clamp(sample.t);
-            output.edge_vertices.push(grid.between_walls(node, along));
-        }
-        output.quads += 1;
+        let point = grid.ideal(node, on_axis(axis, sample.t));
+        let tangent = Tangent::new(point, sample.normal.map(f64::from), grid.voxel());
+        visit(EdgePolygon { polygon, envelope, tangent, node, along: (axis, sample.t) });
     }
-    output
+}
+
+/// The offset `t` along `axis`.
+fn on_axis(axis: Axis, t: f64) -> [f64; 3] {
+    let mut along = [0.0; 3];
+    along[axis as usize] = t;
+    along
 }
 
 /// An end of a grid edge.

@@ -1,6 +1,7 @@
 //! From the polygon around a crossed grid edge to triangles.
 
 use super::envelope::Envelope;
+use super::polygon_edges;
 use super::qef::dot;
 
 /// Four cell vertices, and a face vertex between any two of them.
@@ -107,22 +108,48 @@ pub enum Cut {
 /// The number that stands for the vertex on the grid edge.
 pub const EDGE_VERTEX: u32 = u32::MAX;
 
-/// Cuts `polygon` into good triangles and appends them to `triangles`.
+/// How it is decided which triangles stay in the envelope of a grid edge. Either way the mesh is closed,
+/// 2-manifold and free of intersections.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum CutMethod {
+    /// By convex/concave analysis (\[LW11\] section VI).
+    #[default]
+    ConvexConcave,
+    /// By segment-triangle intersections (Ju and Udeshi 2006): slower, and never with fewer triangles. It is
+    /// there to be measured against.
+    PolygonEdges,
+}
+
+/// Cuts `polygon` into triangles that stay in the envelope and appends them to `triangles`.
 pub fn polygonize(
     polygon: &Polygon,
     envelope: &Envelope,
     tangent: &Tangent,
+    method: CutMethod,
     triangles: &mut Vec<[u32; 3]>,
 ) -> Cut {
-    if polygon.len == 4 {
-        return match quad(polygon, envelope, tangent) {
-            Some(cut) => {
-                triangles.extend(cut);
-                Cut::Diagonals
-            }
-            None => fan(polygon, triangles),
-        };
+    let cut = match method {
+        CutMethod::ConvexConcave if polygon.len > 4 => return ears(polygon, envelope, tangent, triangles),
+        CutMethod::ConvexConcave => quad(polygon, tangent, is_good(envelope)),
+        CutMethod::PolygonEdges if polygon.len > 4 => None,
+        CutMethod::PolygonEdges => quad(polygon, tangent, |quad| polygon_edges::is_legal(quad, envelope)),
+    };
+    match cut {
+        Some(cut) => {
+            triangles.extend(cut);
+            Cut::Diagonals
+        }
+        None => fan(polygon, triangles),
     }
+}
+
+/// Whether the diagonal from the first to the third corner of a quad makes two good triangles.
+fn is_good(envelope: &Envelope) -> impl Fn([[f64; 3]; 4]) -> bool {
+    |[a, b, c, d]| envelope.is_good(a, b, c) && envelope.is_good(c, d, a)
+}
+
+/// Cuts a polygon with face vertices: good ears first, the rest as a quad or around the edge's vertex.
+fn ears(polygon: &Polygon, envelope: &Envelope, tangent: &Tangent, triangles: &mut Vec<[u32; 3]>) -> Cut {
     let first = triangles.len();
     let mut rest = *polygon;
     while rest.len > 4 {
@@ -131,7 +158,7 @@ pub fn polygonize(
         rest.remove(ear);
     }
     if rest.len == 4
-        && let Some(cut) = quad(&rest, envelope, tangent)
+        && let Some(cut) = quad(&rest, tangent, is_good(envelope))
     {
         triangles.extend(cut);
         return Cut::Diagonals;
@@ -146,17 +173,22 @@ pub fn polygonize(
     fan(polygon, triangles)
 }
 
-/// The two triangles of the better legal diagonal of a quad; `None` without a legal one.
+/// The two triangles of the better legal diagonal of a quad; `None` without a legal one. `is_legal` judges
+/// the diagonal from the first to the third corner.
 #[inline]
-fn quad(polygon: &Polygon, envelope: &Envelope, tangent: &Tangent) -> Option<[[u32; 3]; 2]> {
+fn quad(
+    polygon: &Polygon,
+    tangent: &Tangent,
+    is_legal: impl Fn([[f64; 3]; 4]) -> bool,
+) -> Option<[[u32; 3]; 2]> {
     let corner = |i: usize| polygon.corners[i & 3];
     // The diagonal from corner i to corner i + 2.
     let diagonal = |i: usize| [corner(i).position, corner(i + 2).position];
     let first = usize::from(tangent.prefers(diagonal(1), diagonal(0)));
     [first, first ^ 1].into_iter().find_map(|i| {
-        let halves = [[corner(i), corner(i + 1), corner(i + 2)], [corner(i + 2), corner(i + 3), corner(i)]];
-        let good = halves.iter().all(|[a, b, c]| envelope.is_good(a.position, b.position, c.position));
-        good.then(|| halves.map(|half| half.map(|c| c.vertex)))
+        let [a, b, c, d] = [corner(i), corner(i + 1), corner(i + 2), corner(i + 3)];
+        is_legal([a, b, c, d].map(|corner| corner.position))
+            .then(|| [[a, b, c], [c, d, a]].map(|half| half.map(|corner| corner.vertex)))
     })
 }
 
@@ -193,7 +225,7 @@ mod tests {
         }
         let mut triangles = Vec::new();
         let tangent = Tangent::new([0.0, 0.0, 0.5], normal, 1.0);
-        (polygonize(&polygon, &ENVELOPE, &tangent, &mut triangles), triangles)
+        (polygonize(&polygon, &ENVELOPE, &tangent, CutMethod::ConvexConcave, &mut triangles), triangles)
     }
 
     #[test]

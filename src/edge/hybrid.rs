@@ -10,11 +10,11 @@ use glam::DVec3;
 
 /// A root is good when abs(phi) is below this many voxels. The promise is 1e-6; corners of the offset are
 /// found by intersecting planes through the roots, which multiplies their errors.
-const TOLERANCE: f64 = 1e-7;
+pub(super) const TOLERANCE: f64 = 1e-7;
 
 /// Bisection ends when the interval is shorter than this part of the edge. By then a continuous phi is
 /// below the tolerance; what is left is a jump, or rounding far from the origin.
-const SHORTEST: f64 = 1e-9;
+pub(super) const SHORTEST: f64 = 1e-9;
 
 /// A grid edge, with what the band knows of its ends.
 #[derive(Clone, Copy, Debug)]
@@ -46,9 +46,10 @@ pub(super) struct Root {
 
 /// One end of the interval that brackets the root.
 #[derive(Clone, Copy)]
-struct End {
-    t: f64,
-    sample: Sample,
+pub(super) struct End {
+    /// Position between the inside end (0) and the outside end (1).
+    pub(super) t: f64,
+    pub(super) sample: Sample,
 }
 
 pub(super) struct Solver<'a> {
@@ -64,6 +65,11 @@ impl Solver<'_> {
         let [inside, outside] = edge.triangles;
         let mut low = End { t: 0.0, sample: self.node(edge.inside, inside, statistics) };
         let mut high = End { t: 1.0, sample: self.node(edge.outside, outside, statistics) };
+        // A node on the surface is the root; rounding may have given its distance either sign.
+        if let Some(end) = [low, high].into_iter().find(|end| self.is_root(end)) {
+            statistics.by_subdivision[0] += 1;
+            return self.finish(edge, end);
+        }
         // The band decided the signs; where an open mesh makes the distance disagree, nothing is bracketed.
         if self.phi(&low) >= 0.0 || self.phi(&high) < 0.0 {
             return self.jump(edge, 0.5, statistics);
@@ -112,7 +118,13 @@ impl Solver<'_> {
     }
 
     /// The interval shrank to nothing: a root that rounding keeps from being recognised, or a jump.
-    fn collapsed(&self, edge: &GridEdge, low: End, high: End, statistics: &mut EdgeStatistics) -> Root {
+    pub(super) fn collapsed(
+        &self,
+        edge: &GridEdge,
+        low: End,
+        high: End,
+        statistics: &mut EdgeStatistics,
+    ) -> Root {
         let rounding = 1e-12 * (edge.inside.abs().max_element() + self.r.abs());
         if self.phi(&high) - self.phi(&low) > 4.0 * SHORTEST * self.voxel + rounding {
             return self.jump(edge, 0.5 * (low.t + high.t), statistics);
@@ -121,12 +133,12 @@ impl Solver<'_> {
         self.finish(edge, low)
     }
 
-    fn jump(&self, edge: &GridEdge, t: f64, statistics: &mut EdgeStatistics) -> Root {
+    pub(super) fn jump(&self, edge: &GridEdge, t: f64, statistics: &mut EdgeStatistics) -> Root {
         statistics.sign_jumps += 1;
         Root { t, normal: (edge.outside - edge.inside) / self.voxel }
     }
 
-    fn finish(&self, edge: &GridEdge, end: End) -> Root {
+    pub(super) fn finish(&self, edge: &GridEdge, end: End) -> Root {
         // Directions to a closest point nearer than the root's own error mean nothing.
         let vanishing = 1e3 * TOLERANCE * self.voxel;
         let normal = self.distance.gradient(self.at(edge, end.t), &end.sample, vanishing);
@@ -137,7 +149,7 @@ impl Solver<'_> {
         self.phi(end).abs() <= TOLERANCE * self.voxel
     }
 
-    fn phi(&self, end: &End) -> f64 {
+    pub(super) fn phi(&self, end: &End) -> f64 {
         end.sample.distance - self.r
     }
 
@@ -145,16 +157,16 @@ impl Solver<'_> {
         edge.inside + (edge.outside - edge.inside) * t
     }
 
-    fn replace(&self, low: &mut End, high: &mut End, end: End) {
+    pub(super) fn replace(&self, low: &mut End, high: &mut End, end: End) {
         *(if self.phi(&end) < 0.0 { low } else { high }) = end;
     }
 
-    fn end(&self, edge: &GridEdge, t: f64, guess: u32, statistics: &mut EdgeStatistics) -> End {
+    pub(super) fn end(&self, edge: &GridEdge, t: f64, guess: u32, statistics: &mut EdgeStatistics) -> End {
         statistics.queries += 1;
         End { t, sample: self.distance.at(self.at(edge, t), guess) }
     }
 
-    fn node(&self, p: DVec3, triangle: NodeTriangle, statistics: &mut EdgeStatistics) -> Sample {
+    pub(super) fn node(&self, p: DVec3, triangle: NodeTriangle, statistics: &mut EdgeStatistics) -> Sample {
         match triangle {
             NodeTriangle::Known(t) => self.distance.from_triangle(p, t),
             NodeTriangle::Guess(t) => {

@@ -3,6 +3,7 @@
 //! Promised for closed input: every crossing lies within 1e-6 voxels of the offset surface.
 
 mod analytic;
+mod bisection;
 mod crossings;
 mod hybrid;
 mod regions;
@@ -11,5 +12,5 @@ mod solve;
 mod statistics;
 
 pub use crossings::{Crossing, Crossings, EdgeId, EdgeNumbers, TooManyEdges, bits};
-pub use solve::{NodeTriangles, solve};
+pub use solve::{EdgeSettings, NodeTriangles, RootMethod, solve, solve_by};
 pub use statistics::EdgeStatistics;

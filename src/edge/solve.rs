@@ -1,6 +1,7 @@
 //! All intersected edges of a band, in parallel over its leaves.
 
-use super::hybrid::{GridEdge, NodeTriangle, Solver};
+use super::bisection;
+use super::hybrid::{GridEdge, NodeTriangle, Solver, TOLERANCE};
 use super::statistics::EdgeStatistics;
 use super::{Crossing, Crossings, EdgeNumbers};
 use crate::band::{LeafId, SignField};
@@ -46,6 +47,36 @@ impl NodeTriangles {
     }
 }
 
+/// How the intersection of an edge is found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum RootMethod {
+    /// In closed form where that works, by bisection elsewhere.
+    #[default]
+    Hybrid,
+    /// By halving only, until abs(phi) is at most `tolerance` voxels: the measure that Table V of \[LW11\]
+    /// holds against the hybrid method.
+    Bisection {
+        /// In voxels, positive.
+        tolerance: f64,
+    },
+}
+
+impl RootMethod {
+    /// Bisection to the tolerance of the hybrid method.
+    pub const PLAIN_BISECTION: RootMethod = RootMethod::Bisection { tolerance: TOLERANCE };
+}
+
+/// Which surface to intersect with, on which lattice, and how.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgeSettings {
+    /// The lattice.
+    pub lattice: Lattice,
+    /// The offset distance r in model units.
+    pub r: f64,
+    /// The way to the roots.
+    pub method: RootMethod,
+}
+
 /// The intersections of the edges numbered by `numbers` with the surface at distance `r`.
 ///
 /// # Errors
@@ -59,6 +90,23 @@ pub fn solve(
     triangles: &NodeTriangles,
     run: &RunSettings,
 ) -> Result<(Crossings, EdgeStatistics), Cancelled> {
+    let settings = EdgeSettings { lattice, r, method: RootMethod::Hybrid };
+    solve_by(distance, &settings, signs, numbers, triangles, run)
+}
+
+/// The same as [`solve`], by the method that the settings name.
+///
+/// # Errors
+/// Cancellation.
+pub fn solve_by(
+    distance: &SignedDistance,
+    settings: &EdgeSettings,
+    signs: &SignField,
+    numbers: EdgeNumbers,
+    triangles: &NodeTriangles,
+    run: &RunSettings,
+) -> Result<(Crossings, EdgeStatistics), Cancelled> {
+    let EdgeSettings { lattice, r, method } = *settings;
     let solver = Solver { distance, r, voxel: lattice.voxel };
     let mut samples = vec![Crossing { t: 0.0, normal: [0.0; 3] }; numbers.len()];
     let mut rest: &mut [Crossing] = &mut samples;
@@ -71,7 +119,7 @@ pub fn solve(
         }
     }
     let phase = run.phase(Phase::Edges, tasks.len() as u64);
-    let leaf = LeafSolver { solver, lattice, signs, numbers: &numbers, triangles };
+    let leaf = LeafSolver { solver, method, lattice, signs, numbers: &numbers, triangles };
     let statistics = run.install(|| {
         tasks
             .into_par_iter()
@@ -89,6 +137,7 @@ pub fn solve(
 
 struct LeafSolver<'a> {
     solver: Solver<'a>,
+    method: RootMethod,
     lattice: Lattice,
     signs: &'a SignField,
     numbers: &'a EdgeNumbers,
@@ -130,7 +179,12 @@ impl LeafSolver<'_> {
         } else {
             (GridEdge { inside: q, outside: p, triangles: [triangle(known[1]), triangle(known[0])] }, false)
         };
-        let root = self.solver.solve(&edge, statistics);
+        let root = match self.method {
+            RootMethod::Hybrid => self.solver.solve(&edge, statistics),
+            RootMethod::Bisection { tolerance } => {
+                bisection::solve(&self.solver, &edge, tolerance, statistics)
+            }
+        };
         let t = if forward { root.t } else { 1.0 - root.t };
         Crossing { t, normal: root.normal.as_vec3().to_array() }
     }

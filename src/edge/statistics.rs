@@ -11,9 +11,9 @@ pub const COUNTED_SUBDIVISIONS: usize = 6;
 pub struct EdgeStatistics {
     /// Intersected grid edges.
     pub intersected: u64,
-    /// Entry n: edges solved analytically after n subdivisions.
+    /// Entry n: edges solved analytically after n subdivisions; by plain bisection, edges solved by n halvings.
     pub by_subdivision: [u64; COUNTED_SUBDIVISIONS + 1],
-    /// Edges that bisection finished.
+    /// Edges that bisection finished; by plain bisection, those that took more than six halvings.
     pub bisected: u64,
     /// Closest-point queries for all of them.
     pub queries: u64,

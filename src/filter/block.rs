@@ -1,6 +1,6 @@
 //! Cubic blocks of grid nodes.
 
-use crate::lattice::{Ijk, Lattice};
+use crate::lattice::{Ijk, LEAF_DIM, Lattice};
 use glam::DVec3;
 
 /// The nodes `origin` .. `origin + side - 1` along each axis.
@@ -25,6 +25,13 @@ impl Block {
     /// Radius of the sphere through the block's corner nodes: the papers' delta.
     pub fn radius(&self, lattice: Lattice) -> f64 {
         0.5 * 3f64.sqrt() * f64::from(self.side - 1) * lattice.voxel
+    }
+
+    /// The origins of the leaves in the block, z fastest. Its side must be a multiple of a leaf's.
+    pub fn leaves(&self) -> impl Iterator<Item = Ijk> + use<> {
+        let Block { origin, side } = *self;
+        let steps = move || (0..side).step_by(LEAF_DIM as usize);
+        steps().flat_map(move |x| steps().flat_map(move |y| steps().map(move |z| origin + Ijk::new(x, y, z))))
     }
 
     /// The eight halves, z fastest.

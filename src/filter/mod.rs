@@ -8,9 +8,11 @@
 mod block;
 mod bounding_box;
 mod octree;
+mod settings;
 mod signed_distance;
 mod statistics;
 
 pub use block::Block;
 pub use octree::{Filter, Verdict};
+pub use settings::{BoxSide, BoxSideError, FilterSettings, LARGEST_BOX, Switch};
 pub use statistics::FilterStatistics;

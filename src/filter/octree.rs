@@ -1,12 +1,16 @@
 //! The octree filter (\[LW11\] section IV.D), and the order in which the filters are applied.
 
-use super::{Block, FilterStatistics, bounding_box, signed_distance};
+use super::{Block, FilterSettings, FilterStatistics, Switch, bounding_box, signed_distance};
 use crate::distance::SignedDistance;
 use crate::lattice::Lattice;
 
 /// Rounding allowance of a test, in voxels: nodes are evaluated with an error far below this, and a block
 /// is only ever kept for it in vain.
 const ROUNDING: f64 = 1e-6;
+
+/// Centres of blocks up to this side are queried eight at a time. For larger blocks they are so far apart
+/// that each of the eight has triangles of its own, and one descent would look at all for all.
+const TOGETHER: i32 = 4;
 
 /// What a filter says of a block.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,21 +39,28 @@ pub struct Filter<'a> {
     pub r: f64,
     /// Half-width of the band in model units: nodes with abs(phi) up to this are kept.
     pub half_width: f64,
+    /// Which filters are on. [`bounding_box`](Self::bounding_box) heeds the first two; whether to call
+    /// [`octree`](Self::octree) is the caller's choice.
+    pub settings: FilterSettings,
 }
 
 impl Filter<'_> {
-    /// Applies the bounding box filter, then the signed distance filter to a bounding box.
+    /// Applies the bounding box filter, then the signed distance filter to a bounding box, as far as they
+    /// are on.
     pub fn bounding_box(&self, block: Block, statistics: &mut FilterStatistics) -> Verdict {
+        let FilterSettings { bounding_box, signed_distance, .. } = self.settings;
         let centre = block.centre(self.lattice);
         let reach = self.reach(block);
         let hit = self.distance.ssvh().closest(centre);
         statistics.bounding_box_queries += 1;
         let signed = self.distance.from_triangle(centre, hit.triangle).distance;
         let phi = signed - self.r;
-        if bounding_box::rejects(hit.distance_squared.sqrt(), self.r.abs(), reach) {
+        if bounding_box == Switch::On
+            && bounding_box::rejects(hit.distance_squared.sqrt(), self.r.abs(), reach)
+        {
             return uniform(phi);
         }
-        if signed_distance::rejects(signed, self.r, reach) {
+        if signed_distance == Switch::On && signed_distance::rejects(signed, self.r, reach) {
             statistics.signed_distance_rejected += 1;
             return uniform(phi);
         }
@@ -67,10 +78,17 @@ impl Filter<'_> {
         statistics: &mut FilterStatistics,
         visit: &mut impl FnMut(Block, Verdict),
     ) {
-        for child in block.children() {
-            let sample = self.distance.at(child.centre(self.lattice), triangle);
+        let children = block.children();
+        let centres = children.map(|child| child.centre(self.lattice));
+        let hits = if children[0].side <= TOGETHER {
+            self.distance.ssvh().closest_to_eight(&centres, triangle)
+        } else {
+            centres.map(|centre| self.distance.ssvh().closest_from(centre, triangle))
+        };
+        for ((child, centre), hit) in children.into_iter().zip(centres).zip(hits) {
+            let sample = self.distance.from_triangle(centre, hit.triangle);
             let phi = sample.distance - self.r;
-            if phi.abs() > self.reach(child) {
+            if self.clearance(sample.distance) > self.reach(child) {
                 statistics.octree_queries_invalid += 1;
                 visit(child, uniform(phi));
                 continue;
@@ -81,6 +99,17 @@ impl Filter<'_> {
             } else {
                 visit(child, Verdict::Kept { triangle: sample.triangle, distance: sample.distance });
             }
+        }
+    }
+
+    /// How far a block's centre is from the surface that the octree filter looks for; without the signed
+    /// distance filter, from the nearer one of the two at distance abs(r), as the counts of the paper's
+    /// BB + OT have it.
+    #[inline]
+    fn clearance(&self, signed: f64) -> f64 {
+        match self.settings.signed_distance {
+            Switch::On => (signed - self.r).abs(),
+            Switch::Off => (signed.abs() - self.r.abs()).abs(),
         }
     }
 

@@ -22,6 +22,16 @@ pub struct FilterStatistics {
     pub valid_nodes: u64,
 }
 
+impl FilterStatistics {
+    /// All distance computations: at centres of boxes, at centres of octree blocks, at nodes.
+    pub fn distance_computations(&self) -> u64 {
+        self.bounding_box_queries
+            + self.octree_queries_valid
+            + self.octree_queries_invalid
+            + self.node_queries
+    }
+}
+
 impl AddAssign for FilterStatistics {
     fn add_assign(&mut self, o: Self) {
         self.nodes_total += o.nodes_total;

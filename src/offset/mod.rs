@@ -8,7 +8,7 @@
 //! oriented and free of self-intersections, on the coordinates of the chosen [`Precision`]; the same bytes
 //! for every number of threads.
 
-mod narrow_band;
+pub(crate) mod narrow_band;
 mod settings;
 mod statistics;
 #[cfg(test)]
@@ -82,7 +82,7 @@ pub fn offset(mesh: &TriMesh, settings: &OffsetSettings, run: &RunSettings) -> R
     times.edges = started.elapsed().as_secs_f64();
 
     let started = Instant::now();
-    let contour_settings = ContourSettings { precision: settings.precision };
+    let contour_settings = ContourSettings { precision: settings.precision, ..ContourSettings::default() };
     let (mesh, contour) = contour(&signs, &crossings, lattice, &contour_settings, run)?;
     times.contour = started.elapsed().as_secs_f64();
 

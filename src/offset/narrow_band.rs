@@ -10,7 +10,7 @@ use crate::run::RunSettings;
 use crate::vdb::{Band, ClosestGrid, SurfaceGrid};
 
 /// Builds the band into OpenVDB grids: `surface` with phi and `closest` with triangle numbers.
-pub(super) fn build(
+pub(crate) fn build(
     distance: &SignedDistance,
     settings: &BandSettings,
     run: &RunSettings,
@@ -48,7 +48,7 @@ pub(super) fn build(
 const LEAVES_PER_READ: usize = 256;
 
 /// Reads signs and closest triangles of a band back from OpenVDB, as from any stored band.
-pub(super) fn read_back(band: &Band) -> Result<(SignField, NodeTriangles), Error> {
+pub(crate) fn read_back(band: &Band) -> Result<(SignField, NodeTriangles), Error> {
     let origins = band.surface.leaf_origins();
     let mut inside: Vec<LeafMask> = Vec::with_capacity(origins.len());
     let mut values = vec![0.0; LEAVES_PER_READ * LEAF_SIZE];

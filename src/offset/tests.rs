@@ -1,6 +1,7 @@
 //! The whole way, against closed forms and brute force.
 
 use super::*;
+use crate::edge::{EdgeSettings, RootMethod, solve_by};
 use crate::mesh::{measure, shapes};
 use crate::verify::tests::audit::audit;
 use glam::DVec3;
@@ -97,6 +98,39 @@ fn crossings_lie_on_the_offset_surface_by_brute_force() {
             }
         }
         assert!(checked > 1000, "{checked}");
+    }
+}
+
+#[test]
+fn plain_bisection_finds_the_roots_of_the_hybrid_method() {
+    let mesh = shapes::carved_cube(6);
+    let topology = Topology::new(&mesh);
+    let distance = SignedDistance::new(&mesh, &topology);
+    for r in [0.11, -0.07] {
+        let band_settings = settings(r, 0.05).resolve(&mesh).unwrap();
+        let (band, _) = narrow_band::build(&distance, &band_settings, &run(2)).unwrap();
+        let (signs, triangles) = narrow_band::read_back(&band).unwrap();
+        let numbers = EdgeNumbers::new(&signs).unwrap();
+        let solve = |method| {
+            let settings = EdgeSettings { lattice: band_settings.lattice, r, method };
+            solve_by(&distance, &settings, &signs, numbers.clone(), &triangles, &run(2)).unwrap()
+        };
+        let (hybrid, with_closed_forms) = solve(RootMethod::Hybrid);
+        let (plain, halved) = solve(RootMethod::PLAIN_BISECTION);
+        let edges = signs.leaves().flat_map(|leaf| hybrid.numbers.in_leaf(leaf).collect::<Vec<_>>());
+        let mut other_roots = 0;
+        for (((axis, _), a), b) in edges.zip(&hybrid.samples).zip(&plain.samples) {
+            // Along an edge that grazes the surface the distance changes slowly, and the root is vague.
+            let slope = f64::from(a.normal[axis as usize].abs());
+            // An edge may have three roots; each method finds one.
+            other_roots += usize::from((a.t - b.t).abs() * slope > 1e-6);
+        }
+        assert!(hybrid.samples.len() > 1000);
+        assert!(1000 * other_roots < hybrid.samples.len(), "{other_roots} of {}", hybrid.samples.len());
+        let solved = halved.by_subdivision.iter().sum::<u64>() + halved.bisected;
+        assert_eq!((halved.intersected, solved), (with_closed_forms.intersected, halved.intersected));
+        assert!(halved.queries > 5 * with_closed_forms.queries, "{halved:?} {with_closed_forms:?}");
+        assert!(halved.by_subdivision.iter().sum::<u64>() < halved.intersected / 10);
     }
 }
 

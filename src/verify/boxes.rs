@@ -185,8 +185,10 @@ impl BoxTree {
             let below = &self.levels[level - 1];
             // Leaves under a node of the level below.
             let leaves = WIDTH.pow(level as u32 - 1);
-            for child in node * WIDTH..((node + 1) * WIDTH).min(below.len()) {
-                if (child + 1) * leaves > first && below[child].meets(query) {
+            let first_child = node * WIDTH;
+            let children = &below[first_child..(first_child + WIDTH).min(below.len())];
+            for (child, child_box) in (first_child..).zip(children) {
+                if (child + 1) * leaves > first && child_box.meets(query) {
                     stack.push((level - 1, child));
                 }
             }

@@ -45,8 +45,10 @@ pub(super) fn creases(case: &Case) -> Result<CreaseReport, Cancelled> {
         Some(point)
     })?;
     let found: Vec<CreasePoint> = found.into_iter().flatten().collect();
-    let length: f64 = found.iter().map(|p| p.length).sum();
-    let present: f64 = found.iter().filter(|p| p.has_edge).map(|p| p.length).sum();
+    // Not `sum`, whose empty sum is -0.
+    let length_of =
+        |keep: fn(&CreasePoint) -> bool| found.iter().filter(|p| keep(p)).fold(0.0, |sum, p| sum + p.length);
+    let (length, present) = (length_of(|_| true), length_of(|p| p.has_edge));
     Ok(CreaseReport {
         input_edges: edges.len(),
         length,

@@ -23,6 +23,20 @@ pub(super) fn distance_error(case: &Case) -> Result<DistanceReport, Cancelled> {
     Ok(DistanceReport { surface, vertices, edge_midpoints, max, max_at, wrong_side, histogram })
 }
 
+/// Vertices and midpoints that are looked at, in multiples of the area-uniform samples. All of them where a mesh
+/// has few; more would take most of the time without finding anything new.
+const POINTS_PER_SAMPLE: usize = 4;
+
+/// Of more items than are looked at, an even choice.
+fn chosen<T: Copy>(case: &Case, items: Vec<T>) -> Vec<T> {
+    let most = case.settings.samples.saturating_mul(POINTS_PER_SAMPLE);
+    if items.len() <= most {
+        return items;
+    }
+    let place = |i: usize| (i as f64 * (items.len() as f64 / most as f64)) as usize;
+    (0..most).map(|i| items[place(i)]).collect()
+}
+
 /// Error and side of one sample.
 #[derive(Clone, Copy)]
 struct Sampled {
@@ -59,6 +73,7 @@ fn at_vertices(case: &Case) -> Result<Statistics, Cancelled> {
     let mut seen = vec![false; mesh.vertices.len()];
     let corners = case.tree.order().iter().flat_map(|&t| mesh.triangles[t as usize]);
     let order: Vec<u32> = corners.filter(|&v| !std::mem::replace(&mut seen[v as usize], true)).collect();
+    let order = chosen(case, order);
     let at = |i: usize| DVec3::from(mesh.vertices[order[i] as usize]);
     let errors = each(order.len(), case.run, |i, guess| error(case, case.to_input(at(i), guess)))?;
     Ok(statistics(case, errors, at))
@@ -78,6 +93,7 @@ fn at_midpoints(case: &Case) -> Result<Statistics, Cancelled> {
         .flat_map(|&t| &first_sides[begin[t as usize]..begin[t as usize + 1]])
         .copied()
         .collect();
+    let order = chosen(case, order);
     let at = |i: usize| {
         let (t, side) = order[i];
         let [a, b] = ends(mesh, t, side).map(|v| DVec3::from(mesh.vertices[v as usize]));

@@ -163,9 +163,9 @@ pub struct IntersectingPair {
 pub struct DistanceReport {
     /// Points uniform over OUTPUT's area.
     pub surface: Statistics,
-    /// All vertices.
+    /// Vertices: all, or four times as many as there are samples, evenly chosen.
     pub vertices: Statistics,
-    /// The midpoints of all edges.
+    /// The midpoints of edges: all, or four times as many as there are samples, evenly chosen.
     pub edge_midpoints: Statistics,
     /// The largest error of all.
     pub max: Size,

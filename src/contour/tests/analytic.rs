@@ -240,6 +240,6 @@ fn stops_when_cancelled_and_when_too_far() {
     let result = contour(&far, &crossings, Lattice { voxel: 0.1 }, &settings, &run);
     assert!(matches!(result, Err(ContourError::TooFarFromOrigin { .. })));
     assert!(result.unwrap_err().to_string().contains("64-bit"));
-    let wide = ContourSettings { precision: Precision::F64 };
+    let wide = ContourSettings { precision: Precision::F64, ..ContourSettings::default() };
     assert!(contour(&far, &crossings, Lattice { voxel: 0.1 }, &wide, &run).is_ok());
 }

@@ -1,7 +1,7 @@
 //! Sign fields and crossings from functions.
 
 use crate::band::{Axis, Ijk, LEAF_DIM, LeafMask, SignField};
-use crate::contour::{ContourSettings, ContourStatistics, Lattice, Precision, contour};
+use crate::contour::{ContourSettings, ContourStatistics, CutMethod, Lattice, Precision, contour};
 use crate::edge::{Crossing, Crossings, EdgeNumbers};
 use crate::mesh::TriMesh;
 use crate::run::RunSettings;
@@ -79,6 +79,18 @@ pub fn sample(surface: &impl Implicit, n: i32, voxel: f64) -> (SignField, Crossi
     (field, crossings)
 }
 
+/// Contours with the triangles chosen by a method.
+pub fn cut_by(
+    method: CutMethod,
+    (signs, crossings): &(SignField, Crossings),
+    voxel: f64,
+    precision: Precision,
+) -> (TriMesh, ContourStatistics) {
+    let run = RunSettings::with_threads(2).unwrap();
+    let settings = ContourSettings { precision, cut: method };
+    contour(signs, crossings, Lattice { voxel }, &settings, &run).unwrap()
+}
+
 /// Contours with a number of threads.
 pub fn run(
     (signs, crossings): &(SignField, Crossings),
@@ -87,7 +99,14 @@ pub fn run(
     threads: usize,
 ) -> (TriMesh, ContourStatistics) {
     let run = RunSettings::with_threads(threads).unwrap();
-    contour(signs, crossings, Lattice { voxel }, &ContourSettings { precision }, &run).unwrap()
+    contour(
+        signs,
+        crossings,
+        Lattice { voxel },
+        &ContourSettings { precision, ..ContourSettings::default() },
+        &run,
+    )
+    .unwrap()
 }
 
 /// A small generator of random numbers (splitmix64).

@@ -1,4 +1,6 @@
 //! Planted defects are found, clean meshes pass, and closed forms are met.
 
 pub(crate) mod audit;
+mod defects;
+mod figures;
 mod pairs;

@@ -1,0 +1,84 @@
+//! The time that choosing and making the triangles takes, by method (\[LW11\] Table VI).
+
+use super::cells::Cells;
+use super::grid::Grid;
+use super::numbering::CellNumbers;
+use super::output::{EdgePolygon, for_polygons};
+use super::polygonize::{Cut, CutMethod, polygonize};
+use super::{ContourError, ContourSettings, face_vertex, reach};
+use crate::band::{Lattice, SignField};
+use crate::edge::Crossings;
+use crate::run::{Phase, RunSettings};
+use std::time::Instant;
+
+/// The polygons of a few leaves are cut this often by each method, and the shortest time counts: an
+/// interrupt or a cold cache hits one round, not all three.
+const ROUNDS: usize = 3;
+
+/// What one method did.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CutTimes {
+    /// Seconds on one thread for the polygons around all crossed edges.
+    pub seconds: f64,
+    /// Their triangles.
+    pub triangles: u64,
+    /// Polygons that needed a vertex on their grid edge.
+    pub split: u64,
+}
+
+/// Cuts the polygons of the surface once by each of `methods`, on one thread, and measures that part alone.
+///
+/// # Errors
+/// As [`contour`](super::contour).
+///
+/// # Panics
+/// When `crossings` does not belong to `signs`.
+pub fn cut_times<const N: usize>(
+    signs: &SignField,
+    crossings: &Crossings,
+    lattice: Lattice,
+    settings: &ContourSettings,
+    methods: [CutMethod; N],
+    run: &RunSettings,
+) -> Result<[CutTimes; N], ContourError> {
+    let grid = Grid::new(lattice, settings.precision, reach(signs, crossings))?;
+    let phase = run.phase(Phase::Contour, 2 * signs.len() as u64);
+    run.install(|| {
+        let numbers = CellNumbers::new(signs, run)?;
+        let (cells, mut vertices, _) = Cells::place(signs, crossings, grid, &numbers, &phase)?;
+        let mut faces = face_vertex::face_vertices(&cells, &vertices, run)?;
+        vertices.append(&mut faces.positions);
+        let mut times = [CutTimes::default(); N];
+        let mut polygons: Vec<EdgePolygon> = Vec::new();
+        let mut triangles = Vec::new();
+        for leaf in signs.leaves() {
+            phase.advance(1)?;
+            polygons.clear();
+            for_polygons(&cells, &faces, &vertices, leaf, |polygon| polygons.push(polygon));
+            for (times, method) in times.iter_mut().zip(methods) {
+                let mut shortest = f64::INFINITY;
+                for _ in 0..ROUNDS {
+                    triangles.clear();
+                    let started = Instant::now();
+                    let split = cut_all(&polygons, method, &mut triangles);
+                    let seconds = started.elapsed().as_secs_f64();
+                    if shortest.is_infinite() {
+                        times.split += split;
+                        times.triangles += triangles.len() as u64;
+                    }
+                    shortest = shortest.min(seconds);
+                }
+                times.seconds += shortest;
+            }
+        }
+        Ok(times)
+    })
+}
+
+fn cut_all(polygons: &[EdgePolygon], method: CutMethod, triangles: &mut Vec<[u32; 3]>) -> u64 {
+    let mut split = 0;
+    for EdgePolygon { polygon, envelope, tangent, .. } in polygons {
+        split += u64::from(polygonize(polygon, envelope, tangent, method, triangles) == Cut::Split);
+    }
+    split
+}

@@ -1,0 +1,97 @@
+//! What the tables have in common: models, offsets, and the stages before contouring.
+
+use super::PaperSettings;
+use super::models::{Model, PaperModel};
+use crate::band::{BandSettings, SignField};
+use crate::distance::SignedDistance;
+use crate::edge::{EdgeNumbers, NodeTriangles};
+use crate::error::Error;
+use crate::offset::{Length, OffsetResult, OffsetSettings, VoxelSize, narrow_band, offset};
+use crate::run::RunSettings;
+
+/// The settings and the run of a measurement.
+pub(super) struct Lab<'a> {
+    pub settings: &'a PaperSettings,
+    pub run: &'a RunSettings,
+}
+
+/// A band as the solver takes it.
+pub(super) struct Field {
+    pub settings: BandSettings,
+    pub signs: SignField,
+    pub numbers: EdgeNumbers,
+    pub triangles: NodeTriangles,
+}
+
+impl Lab<'_> {
+    /// What stands for a model of the paper.
+    pub fn model(&self, of: PaperModel) -> Result<Model, Error> {
+        self.refined_model(of, 1)
+    }
+
+    /// The same with the sides of its triangles divided by `cuts`.
+    pub fn refined_model(&self, of: PaperModel, cuts: u32) -> Result<Model, Error> {
+        Model::load(of, &self.settings.files, cuts, self.run)
+    }
+
+    /// The settings of an offset by a part of the diagonal.
+    pub fn offset_settings(&self, model: &Model, fraction: f64, resolution: u32) -> OffsetSettings {
+        OffsetSettings {
+            distance: Length::OfDiagonal(fraction),
+            voxel: VoxelSize::Resolution(resolution),
+            sign: model.sign,
+            max_memory: self.settings.max_memory,
+            ..OffsetSettings::default()
+        }
+    }
+
+    /// Offsets a model; `None` when nothing is left.
+    pub fn offset(
+        &self,
+        model: &Model,
+        fraction: f64,
+        resolution: u32,
+    ) -> Result<Option<OffsetResult>, Error> {
+        match offset(&model.mesh, &self.offset_settings(model, fraction, resolution), self.run) {
+            Ok(result) => Ok(Some(result)),
+            Err(Error::Empty(_)) => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The distance field of a model.
+    pub fn distance<'m>(&self, model: &'m Model) -> SignedDistance<'m> {
+        self.run.install(|| SignedDistance::new(&model.mesh, &model.topology))
+    }
+
+    /// The stages up to the numbered edges; `None` when no edge is intersected.
+    pub fn field(
+        &self,
+        model: &Model,
+        distance: &SignedDistance,
+        fraction: f64,
+        resolution: u32,
+    ) -> Result<Option<Field>, Error> {
+        let settings = self.offset_settings(model, fraction, resolution).resolve(&model.mesh)?;
+        let (band, _) = narrow_band::build(distance, &settings, self.run)?;
+        let (signs, triangles) = narrow_band::read_back(&band)?;
+        let numbers = EdgeNumbers::new(&signs)?;
+        Ok((!numbers.is_empty()).then_some(Field { settings, signs, numbers, triangles }))
+    }
+
+    /// How the run was done, for the foot of a table.
+    pub fn conditions(&self) -> String {
+        let nodes = u64::from(self.settings.resolution) + 1;
+        let threads = self.run.threads();
+        let coarser = if self.settings.resolution == super::PUBLISHED_RESOLUTION {
+            "as published"
+        } else {
+            "not the published 513^3: hold no counts against it"
+        };
+        format!("here: {nodes} nodes along the longest side ({coarser}), {threads} threads")
+    }
+}
+
+/// The note on the published times.
+pub(super) const PUBLISHED_MACHINE: &str =
+    "paper: 513^3 nodes, two Intel Xeon E5440 at 2.83 GHz (2007), eight cores";
