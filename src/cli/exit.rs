@@ -1,5 +1,6 @@
 //! How the program ends: exit codes, and which error means which.
 
+use exocarp::compare::CompareError;
 use exocarp::contour::ContourError;
 use exocarp::error::Error;
 use exocarp::io::SaveProblem;
@@ -93,6 +94,8 @@ fn of(error: &Error) -> Exit {
         Error::Settings(_) | Error::Verify(VerifyError::Setting { .. }) => Exit::Usage,
         Error::Load(_) | Error::Input(_) | Error::Verify(_) => Exit::Input,
         Error::Empty(_) => Exit::Empty,
+        Error::Compare(CompareError::Setting(_)) => Exit::Usage,
+        Error::Compare(CompareError::Temporary(e)) => of_io(e),
         Error::Memory(_) | Error::TooManyEdges(_) | Error::Threads(_) => Exit::Limit,
         Error::Contour(ContourError::Cancelled(_)) => Exit::Interrupted,
         Error::Contour(_) => Exit::Limit,
