@@ -32,7 +32,7 @@ test: setup
 	cargo test --locked
 
 test-full: setup
-	cargo test --release --locked -- --include-ignored
+	EXOCARP_HEAVY=1 cargo test --release --locked
 
 lint: setup
 	cargo fmt --check

@@ -39,6 +39,12 @@ pub fn grid_nodes(bounds: Aabb, settings: &BandSettings) -> [Ijk; 2] {
 /// octree starts higher and there are fewer tasks to share out among the threads.
 const BOXES_ALONG_AXIS: i32 = 8;
 
+/// Nodes nearer to the offset surface than this, in voxels, are on it, and so outside. A face of the offset
+/// often lies in a plane of nodes (with a resolution instead of a voxel size, a model centred at the origin
+/// always has one there). Rounding would give these nodes signs at random, and the surface would zigzag
+/// between two layers of cells. Far below the tolerance of edge intersections.
+const ON_SURFACE: f64 = 1e-9;
+
 /// Bounding boxes worked off together; the leaves of two such batches are in memory at a time.
 const BOXES_PER_BATCH: usize = 64;
 
@@ -245,6 +251,12 @@ impl Worker<'_> {
         leaf.finish(origin, batch);
     }
 
+    /// `phi` at `p`, or 0 where it is so close to 0 that only rounding gives it a sign.
+    fn settled(&self, phi: f64, p: DVec3) -> f64 {
+        let rounding = 4.0 * f64::EPSILON * (p.abs().max_element() + self.settings.r.abs());
+        if phi.abs() <= ON_SURFACE * self.settings.lattice.voxel + rounding { 0.0 } else { phi }
+    }
+
     /// Evaluates the eight nodes of a block of side 2 whose centre has the signed distance `centre`.
     fn nodes(
         &self,
@@ -258,15 +270,16 @@ impl Worker<'_> {
         let background = self.settings.background();
         // Farther from the surface than any node from the centre: the sign is that of the centre.
         let one_side = centre.abs() > block.radius(lattice) * (1.0 + 1e-9);
-        for node in block.children().map(|b| b.origin) {
-            let p = DVec3::from(lattice.world_from_index(node));
-            let hit = distance.ssvh().closest_from(p, triangle);
+        let nodes = block.children().map(|b| b.origin);
+        let points = nodes.map(|node| DVec3::from(lattice.world_from_index(node)));
+        let hits = distance.ssvh().closest_to_eight(&points, triangle);
+        for ((node, p), hit) in nodes.into_iter().zip(points).zip(hits) {
             let signed = if one_side {
                 hit.distance_squared.sqrt().copysign(centre)
             } else {
                 distance.from_triangle(p, hit.triangle).distance
             };
-            let phi = signed - r;
+            let phi = self.settled(signed - r, p);
             statistics.node_queries += 1;
             statistics.valid_nodes += u64::from(phi.abs() <= lattice.voxel);
             let number = node.number_in_leaf();

@@ -196,3 +196,32 @@ fn each_filter_saves_distance_computations() {
     let brute = count_queries(&distance, &settings, &none, &run).unwrap();
     assert!(brute.node_queries >= brute.nodes_total && count(Off, Off, 4) < brute.node_queries);
 }
+
+#[test]
+fn nodes_on_the_offset_surface_are_outside_whatever_rounding_says() {
+    let mesh = crate::mesh::shapes::cube(1);
+    let topology = Topology::new(&mesh);
+    let distance = SignedDistance::new(&mesh, &topology);
+    let lattice = Lattice { voxel: 0.1 };
+    // Faces at 1 + 0.3, where 13 * 0.1 is a node; and at 1 - 0.3, where 7 * 0.1 is not 0.7 in f64.
+    for (r, plane) in [(0.3, 13), (-0.3, 7)] {
+        let settings = BandSettings { lattice, r, half_width: 1.0 };
+        let run = RunSettings::with_threads(1).unwrap();
+        let (mut on_plane, mut values) = (0, Vec::new());
+        build(&distance, &settings, &run, |batch| {
+            for (leaf, &origin) in batch.origins.iter().enumerate() {
+                for n in 0..LEAF_SIZE {
+                    let [i, j, k] = Ijk::in_leaf(origin, n).0;
+                    if i.abs() == plane && j.abs() < 6 && k.abs() < 6 {
+                        on_plane += 1;
+                        values.push(batch.values[leaf * LEAF_SIZE + n]);
+                    }
+                }
+            }
+            Ok::<_, Cancelled>(())
+        })
+        .unwrap();
+        assert_eq!(on_plane, 2 * 11 * 11);
+        assert!(values.iter().all(|&v| v == f32::MIN_POSITIVE), "{r}: {values:?}");
+    }
+}

@@ -102,8 +102,9 @@ pub(super) fn print(text: &str) {
 /// On Ctrl-C or the signal to terminate: cancels, gives the command a moment to end by itself, and ends
 /// the program if it does not.
 fn handle_interrupt(cancel: CancelToken, staging: Staging) {
-    // Reading a file or building a hierarchy cannot be cancelled. The promise is to stop within 200 ms.
-    const GRACE: Duration = Duration::from_millis(120);
+    // Reading and writing a file or building a hierarchy cannot be cancelled. The promise is to stop within
+    // 200 ms, and removing a large incomplete file takes some of them.
+    const GRACE: Duration = Duration::from_millis(20);
     let handler = move || {
         cancel.cancel();
         std::thread::sleep(GRACE);

@@ -76,8 +76,9 @@ fn inside_by_parity(mesh: &TriMesh, p: DVec3) -> bool {
 /// A star-shaped solid with deep folds and sharp spikes.
 fn spiky(rings: usize, sectors: usize) -> TriMesh {
     let mut mesh = TriMesh::default();
-    let radius =
-        |i: usize, j: usize| if (i * 5 + j * 3) % 4 == 0 { 2.0 } else { 0.3 + 0.1 * ((i + j) % 3) as f64 };
+    let radius = |i: usize, j: usize| {
+        if (i * 5 + j * 3).is_multiple_of(4) { 2.0 } else { 0.3 + 0.1 * ((i + j) % 3) as f64 }
+    };
     mesh.vertices.push([0.0, 0.0, -1.0]);
     for i in 0..rings {
         let theta = std::f64::consts::PI * ((i + 1) as f64 / (rings + 1) as f64);

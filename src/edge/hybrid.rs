@@ -65,6 +65,11 @@ impl Solver<'_> {
         let [inside, outside] = edge.triangles;
         let mut low = End { t: 0.0, sample: self.node(edge.inside, inside, statistics) };
         let mut high = End { t: 1.0, sample: self.node(edge.outside, outside, statistics) };
+        // A node on the surface is the root; rounding may have given its distance either sign.
+        if let Some(end) = [low, high].into_iter().find(|end| self.is_root(end)) {
+            statistics.by_subdivision[0] += 1;
+            return self.finish(edge, end);
+        }
         // The band decided the signs; where an open mesh makes the distance disagree, nothing is bracketed.
         if self.phi(&low) >= 0.0 || self.phi(&high) < 0.0 {
             return self.jump(edge, 0.5, statistics);
@@ -140,7 +145,7 @@ impl Solver<'_> {
         Root { t: end.t, normal }
     }
 
-    fn is_root(&self, end: &End) -> bool {
+    pub(super) fn is_root(&self, end: &End) -> bool {
         self.phi(end).abs() <= TOLERANCE * self.voxel
     }
 

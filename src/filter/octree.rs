@@ -8,6 +8,10 @@ use crate::lattice::Lattice;
 /// is only ever kept for it in vain.
 const ROUNDING: f64 = 1e-6;
 
+/// Centres of blocks up to this side are queried eight at a time. For larger blocks they are so far apart
+/// that each of the eight has triangles of its own, and one descent would look at all for all.
+const TOGETHER: i32 = 4;
+
 /// What a filter says of a block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
@@ -74,8 +78,15 @@ impl Filter<'_> {
         statistics: &mut FilterStatistics,
         visit: &mut impl FnMut(Block, Verdict),
     ) {
-        for child in block.children() {
-            let sample = self.distance.at(child.centre(self.lattice), triangle);
+        let children = block.children();
+        let centres = children.map(|child| child.centre(self.lattice));
+        let hits = if children[0].side <= TOGETHER {
+            self.distance.ssvh().closest_to_eight(&centres, triangle)
+        } else {
+            centres.map(|centre| self.distance.ssvh().closest_from(centre, triangle))
+        };
+        for ((child, centre), hit) in children.into_iter().zip(centres).zip(hits) {
+            let sample = self.distance.from_triangle(centre, hit.triangle);
             let phi = sample.distance - self.r;
             if self.clearance(sample.distance) > self.reach(child) {
                 statistics.octree_queries_invalid += 1;

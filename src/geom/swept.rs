@@ -101,7 +101,7 @@ impl Swept {
         let base = corners[(longest + 1) % 3] - corners[longest];
         let u = base.try_normalize().unwrap_or(DVec3::X);
         let apex = corners[(longest + 2) % 3] - corners[longest];
-        let v = (apex - u * apex.dot(u)).try_normalize().unwrap_or_else(|| u.any_orthonormal_vector());
+        let v = perpendicular(apex - u * apex.dot(u), u, base.length());
         fit(&corners.map(|c| (c, 0.0)), u, v, SweptKind::Rectangle)
     }
 
@@ -111,6 +111,18 @@ impl Swept {
         let radius = spheres.iter().map(|&(p, r)| self.core_distance(p) + r).fold(0.0, f64::max);
         Swept { radius, ..self }
     }
+}
+
+/// The direction of `v`, what is left of a vector of about `size` after its part along the unit vector `u`
+/// was taken off. When next to nothing is left, that is rounding and may point anywhere, along `u` too: then
+/// some other perpendicular direction.
+fn perpendicular(v: DVec3, u: DVec3, size: f64) -> DVec3 {
+    if v.length() <= 1e-9 * size {
+        return u.any_orthonormal_vector();
+    }
+    // Once more, since the first time left rounding relative to the larger vector.
+    let v = v.normalize();
+    (v - u * v.dot(u)).normalize()
 }
 
 fn principal_axes(spheres: &[Sphere]) -> (DVec3, DVec3) {
@@ -136,7 +148,9 @@ fn fit(spheres: &[Sphere], u: DVec3, v: DVec3, kind: SweptKind) -> Swept {
     // Distance of a sphere from the core's line or plane, as far as the core's extent does not matter.
     let off_core = |p: DVec3| match kind {
         SweptKind::Rectangle => (p.z - mid.z).abs(),
-        SweptKind::Line | SweptKind::Point => (p.y - mid.y).hypot(p.z - mid.z),
+        SweptKind::Line | SweptKind::Point => {
+            ((p.y - mid.y) * (p.y - mid.y) + (p.z - mid.z) * (p.z - mid.z)).sqrt()
+        }
     };
     let radius = spheres.iter().map(|&(p, r)| off_core(local(p)) + r).fold(0.0, f64::max);
     // The round end already covers sqrt(radius^2 - off^2) beyond the core, so the core can be shorter.
@@ -194,6 +208,18 @@ mod tests {
         let plate: Vec<Sphere> =
             (0..100).map(|i| (DVec3::new((i % 10) as f64, (i / 10) as f64, 0.0), 0.01)).collect();
         assert_eq!(Swept::around(&plate).kind(), SweptKind::Rectangle);
+    }
+
+    #[test]
+    fn axes_are_perpendicular_for_needles_and_segments() {
+        let (a, b) = (DVec3::new(0.37, -0.91, 0.22), DVec3::new(-0.55, 0.13, 0.87));
+        for off in [0.0, 1e-17, 1e-14, 1e-9, 1e-6] {
+            for c in [a, b, a.lerp(b, 0.3)] {
+                let swept = Swept::around_triangle([a, b, c + off * DVec3::new(0.3, 1.0, -0.2)]);
+                assert!(swept.u.dot(swept.v).abs() < 1e-12, "{off}: {swept:?}");
+                assert!((swept.v.length() - 1.0).abs() < 1e-12 && (swept.u.length() - 1.0).abs() < 1e-12);
+            }
+        }
     }
 
     #[test]

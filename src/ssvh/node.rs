@@ -87,6 +87,7 @@ impl Node {
     #[inline(always)]
     pub(super) fn distances(&self, q: Vec3) -> [f32; WIDTH] {
         let mut out = [0.0; WIDTH];
+        #[allow(clippy::needless_range_loop, reason = "a slot runs through several arrays in step")]
         for i in 0..WIDTH {
             let (dx, dy, dz) = (q.x - self.centre[0][i], q.y - self.centre[1][i], q.z - self.centre[2][i]);
             let (ux, uy, uz) = (self.u[0][i], self.u[1][i], self.u[2][i]);
@@ -98,6 +99,25 @@ impl Node {
             let beyond_u = (along_u.abs() - self.half[0][i]).max(0.0);
             let beyond_v = (along_v.abs() - self.half[1][i]).max(0.0);
             out[i] = (beyond_u * beyond_u + beyond_v * beyond_v + height * height).sqrt() - self.radius[i];
+        }
+        out
+    }
+
+    /// The distances of eight points from the volume in `slot`, as [`distances`](Self::distances) gives for
+    /// one point from eight volumes. `x`, `y` and `z` are the points' coordinates.
+    #[inline(always)]
+    pub(super) fn distances_from(&self, slot: usize, points: &[[f32; 8]; 3]) -> [f32; 8] {
+        let at = |a: &[[f32; WIDTH]; 3]| Vec3::new(a[0][slot], a[1][slot], a[2][slot]);
+        let (centre, u, v) = (at(&self.centre), at(&self.u), at(&self.v));
+        let n = u.cross(v);
+        let (half_u, half_v, radius) = (self.half[0][slot], self.half[1][slot], self.radius[slot]);
+        let mut out = [0.0; 8];
+        for i in 0..8 {
+            let (dx, dy, dz) = (points[0][i] - centre.x, points[1][i] - centre.y, points[2][i] - centre.z);
+            let beyond_u = ((dx * u.x + dy * u.y + dz * u.z).abs() - half_u).max(0.0);
+            let beyond_v = ((dx * v.x + dy * v.y + dz * v.z).abs() - half_v).max(0.0);
+            let height = dx * n.x + dy * n.y + dz * n.z;
+            out[i] = (beyond_u * beyond_u + beyond_v * beyond_v + height * height).sqrt() - radius;
         }
         out
     }

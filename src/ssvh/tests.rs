@@ -31,6 +31,8 @@ fn soup(count: usize, size: f64, offset: f64, seed: u64) -> TriMesh {
             0 => c = std::array::from_fn(|k| a[k] * 0.3 + b[k] * 0.7 + 1e-6 * size * (c[k] - a[k])),
             // Coplanar with many others.
             1 => c[2] = a[2],
+            // A segment.
+            2 if i % 3 == 0 => c = a,
             _ => {}
         }
         let n = mesh.vertices.len() as u32;
@@ -110,8 +112,27 @@ fn the_tree_does_not_depend_on_the_number_of_threads() {
     assert_eq!(trees[0].ids, trees[2].ids);
 }
 
+#[test]
+fn eight_points_at_once_find_the_same_as_one_at_a_time() {
+    for (count, size, offset) in [(5, 1.0, 0.0), (3000, 0.02, 0.0), (700, 0.1, 1e6)] {
+        let mesh = soup(count, size, offset, 11);
+        let tree = Ssvh::new(&mesh);
+        let mut state = 5;
+        for n in 0..200 {
+            let spread = [1e-3, 0.05, 2.0][n % 3];
+            let centre = DVec3::from(mesh.vertices[n * 7 % mesh.vertices.len()]);
+            let points = std::array::from_fn(|_| {
+                centre + spread * DVec3::from(std::array::from_fn(|_| random(&mut state) - 0.5))
+            });
+            let hits = tree.closest_to_eight(&points, (n % tree.len()) as u32);
+            for (p, hit) in points.into_iter().zip(hits) {
+                assert_eq!(hit, brute_force(&tree, p), "{p}");
+            }
+        }
+    }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]
     fn equals_brute_force_on_any_soup(
         vertices in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 3..60),

@@ -26,7 +26,7 @@ impl Ssvh {
     /// The first volume that misses a triangle by more than the rounding that queries allow for.
     ///
     /// # Panics
-    /// When a triangle is not in exactly one leaf.
+    /// When a triangle is not in exactly one leaf, or the axes of a volume are not orthonormal.
     pub fn validate(&self) -> Result<(), InvalidSsvh> {
         let mut seen = vec![false; self.len()];
         self.validate_below(0, &mut Vec::new(), &mut seen)?;
@@ -43,7 +43,11 @@ impl Ssvh {
         let n = &self.nodes[node];
         for slot in 0..n.count as usize {
             let child = n.children[slot] as usize;
-            above.push((node, slot, n.swept(slot)));
+            let swept = n.swept(slot);
+            // Distances from a volume are distances only with orthonormal axes.
+            let skew = swept.u.dot(swept.v).abs().max((swept.u.cross(swept.v).length() - 1.0).abs());
+            assert!(skew < 1e-6, "the axes of slot {slot} of node {node} are not orthonormal: {skew}");
+            above.push((node, slot, swept));
             match n.level {
                 Level::Inner => self.validate_below(child, above, seen)?,
                 Level::Leaf => {
