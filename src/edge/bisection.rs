@@ -16,6 +16,11 @@ pub(super) fn solve(
     let [inside, outside] = edge.triangles;
     let mut low = End { t: 0.0, sample: solver.node(edge.inside, inside, statistics) };
     let mut high = End { t: 1.0, sample: solver.node(edge.outside, outside, statistics) };
+    // A node on the surface is the root, as for the hybrid method.
+    if let Some(end) = [low, high].into_iter().find(|end| solver.is_root(end)) {
+        statistics.by_subdivision[0] += 1;
+        return solver.finish(edge, end);
+    }
     if solver.phi(&low) >= 0.0 || solver.phi(&high) < 0.0 {
         return solver.jump(edge, 0.5, statistics);
     }

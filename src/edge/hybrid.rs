@@ -145,7 +145,7 @@ impl Solver<'_> {
         Root { t: end.t, normal }
     }
 
-    fn is_root(&self, end: &End) -> bool {
+    pub(super) fn is_root(&self, end: &End) -> bool {
         self.phi(end).abs() <= TOLERANCE * self.voxel
     }
 
