@@ -42,8 +42,8 @@ fn methods_are_compared_in_a_table_and_in_json() {
     let results = figures["results"].as_array().unwrap();
     assert_eq!(results.len(), 3);
     let number = |k: usize, path: &str| results[k].pointer(path).and_then(|v| v.as_f64()).unwrap();
-    for k in 0..3 {
-        assert_eq!(results[k]["runs"].as_array().unwrap().len(), 2);
+    for (k, result) in results.iter().enumerate() {
+        assert_eq!(result["runs"].as_array().unwrap().len(), 2);
         assert!(number(k, "/median/engine") > 0.0);
         assert!(number(k, "/median/peak_memory") > number(k, "/median/memory_before"));
         assert!(number(k, "/median/active_voxels") > 1000.0);
