@@ -15,7 +15,7 @@ pub use outline::{Outline, outline};
 pub use plane::{Plane, Segment, section};
 pub use raster::{Camera, Frame, Hit, raster};
 pub use shade::{RAMP_ENDS, Truth, Wires, ramp, shaded};
-pub use spots::{Spot, spots};
+pub use spots::{Kind, Spot, spots};
 
 use super::table::{Column, rows};
 use super::{Comparison, MethodResult};
@@ -79,7 +79,7 @@ pub fn page(
                        corners as dots) on the same plane, at the same scale; the true solid is grey. Where black leaves \
                        the colour, the surface is wrong.";
         let panels = grid(comparison, &panels);
-        body += &figure(&format!("section-{}", k + 1), &spot.title, caption, &panels);
+        body += &figure(&format!("section-{}", k + 1), &spot.title(), caption, &panels);
     }
     body += &renderings(comparison, &distance, &spots, run)?;
     let title = escaped(title);

@@ -56,7 +56,7 @@ pub fn panels(
                 Some(e) => format!("off by up to {} voxels here", error(e / h)),
                 None => "nothing here".into(),
             };
-            let label = format!("{} at: {}", method.title(), spot.title);
+            let label = format!("{} at: {}", method.title(), spot.title());
             let chip = format!(r#"<span class="chip" style="background:{colour}"></span>"#);
             let picture = svg.finish(&label);
             format!(

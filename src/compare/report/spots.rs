@@ -1,7 +1,7 @@
 //! Where to look: the worst spot of each method, and the sharpest crease.
 
 use super::plane::Plane;
-use crate::compare::Comparison;
+use crate::compare::{Comparison, Method};
 use crate::distance::SignedDistance;
 use crate::mesh::TriMesh;
 use crate::run::RunSettings;
@@ -11,12 +11,33 @@ use rayon::prelude::*;
 /// A place worth a picture.
 #[derive(Clone, Debug)]
 pub struct Spot {
-    /// Why, as a heading.
-    pub title: String,
+    /// What the true offset surface has there.
+    pub kind: Kind,
+    /// The methods whose largest error is there.
+    pub worst: Vec<Method>,
     /// The section plane, its origin at the spot, up being away from the model.
     pub plane: Plane,
-    /// The number of methods that are worst here.
-    pub worst: usize,
+}
+
+/// Why a spot was chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// It is the sharpest crease.
+    Crease,
+    /// Somebody is worst there.
+    Worst,
+}
+
+impl Spot {
+    /// A heading.
+    pub fn title(&self) -> String {
+        let names: Vec<&str> = self.worst.iter().map(|m| m.title()).collect();
+        match (self.kind, names.is_empty()) {
+            (Kind::Crease, true) => "The sharpest crease".into(),
+            (Kind::Crease, false) => format!("The sharpest crease; worst spot of {}", names.join(", ")),
+            (Kind::Worst, _) => format!("Worst spot of {}", names.join(", ")),
+        }
+    }
 }
 
 /// Spots nearer than this many voxels show the same thing.
@@ -31,21 +52,17 @@ pub fn spots(comparison: &Comparison, distance: &SignedDistance, run: &RunSettin
     let mut spots: Vec<Spot> = Vec::new();
     let meshes = comparison.results.iter().filter_map(|m| m.mesh.as_ref());
     if let Some(at) = meshes.take(1).find_map(|mesh| crease(mesh, distance, run)) {
-        spots.push(Spot { title: "The sharpest crease".into(), plane: plane(at, distance, r, h), worst: 0 });
+        spots.push(Spot { kind: Kind::Crease, worst: Vec::new(), plane: plane(at, distance, r, h) });
     }
     for result in &comparison.results {
         let Some(quality) = &result.quality else { continue };
         let Some(at) = quality.distance.max_at.map(DVec3::from) else { continue };
         let same = |s: &&mut Spot| s.plane.origin.distance(at) <= SAME * h;
         if let Some(spot) = spots.iter_mut().find(same) {
-            spot.title += &match spot.worst {
-                0 => format!(", and where {} is worst", result.method.title()),
-                _ => format!(" and {}", result.method.title()),
-            };
-            spot.worst += 1;
+            spot.worst.push(result.method);
         } else if spots.len() < MOST {
-            let title = format!("The worst spot of {}", result.method.title());
-            spots.push(Spot { title, plane: plane(at, distance, r, h), worst: 1 });
+            let plane = plane(at, distance, r, h);
+            spots.push(Spot { kind: Kind::Worst, worst: vec![result.method], plane });
         }
     }
     spots
