@@ -7,7 +7,13 @@ use std::fs;
 
 #[test]
 fn help_and_version_are_for_stdout() {
-    for arguments in [&["--help"][..], &["offset", "--help"], &["model", "--help"], &["info", "--help"]] {
+    for arguments in [
+        &["--help"][..],
+        &["offset", "--help"],
+        &["model", "--help"],
+        &["info", "--help"],
+        &["paper", "--help"],
+    ] {
         let help = exocarp(arguments);
         assert_eq!(help.code, 0, "{arguments:?}");
         assert!(help.stdout.contains("Examples:"), "{arguments:?}: {}", help.stdout);

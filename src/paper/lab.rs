@@ -35,14 +35,27 @@ impl Lab<'_> {
     }
 
     /// The settings of an offset by a part of the diagonal.
-    pub fn offset_settings(&self, model: &Model, fraction: f64, resolution: u32) -> OffsetSettings {
+    pub fn offset_settings(&self, model: &Model, fraction: f64, voxel: VoxelSize) -> OffsetSettings {
         OffsetSettings {
             distance: Length::OfDiagonal(fraction),
-            voxel: VoxelSize::Resolution(resolution),
+            voxel,
             sign: model.sign,
             max_memory: self.settings.max_memory,
             ..OffsetSettings::default()
         }
+    }
+
+    /// The voxel size of a grid of `resolution` cells that is fitted to the model and its offset by `largest`, for
+    /// tables whose rows share a grid: in the paper the intersected edges of the warrior grow from 85,032 at
+    /// 0.02 to 463,838 at 0.32, and on a grid fitted to each offset they would hardly change.
+    pub fn shared_grid(&self, model: &Model, largest: f64, resolution: u32) -> Result<VoxelSize, Error> {
+        let fitted = self.offset_settings(model, largest, VoxelSize::Resolution(resolution));
+        Ok(VoxelSize::Units(fitted.resolve(&model.mesh)?.lattice.voxel))
+    }
+
+    /// The grid fitted to each offset.
+    pub fn fitted_grid(&self) -> VoxelSize {
+        VoxelSize::Resolution(self.settings.resolution)
     }
 
     /// Offsets a model; `None` when nothing is left.
@@ -50,9 +63,9 @@ impl Lab<'_> {
         &self,
         model: &Model,
         fraction: f64,
-        resolution: u32,
+        voxel: VoxelSize,
     ) -> Result<Option<OffsetResult>, Error> {
-        match offset(&model.mesh, &self.offset_settings(model, fraction, resolution), self.run) {
+        match offset(&model.mesh, &self.offset_settings(model, fraction, voxel), self.run) {
             Ok(result) => Ok(Some(result)),
             Err(Error::Empty(_)) => Ok(None),
             Err(error) => Err(error),
@@ -70,9 +83,9 @@ impl Lab<'_> {
         model: &Model,
         distance: &SignedDistance,
         fraction: f64,
-        resolution: u32,
+        voxel: VoxelSize,
     ) -> Result<Option<Field>, Error> {
-        let settings = self.offset_settings(model, fraction, resolution).resolve(&model.mesh)?;
+        let settings = self.offset_settings(model, fraction, voxel).resolve(&model.mesh)?;
         let (band, _) = narrow_band::build(distance, &settings, self.run)?;
         let (signs, triangles) = narrow_band::read_back(&band)?;
         let numbers = EdgeNumbers::new(&signs)?;

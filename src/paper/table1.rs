@@ -79,7 +79,7 @@ pub(super) fn measure(lab: &Lab) -> Result<Report, Error> {
             let mut row = vec![Cell::text(of.name()), Cell::text(faces), Cell::Number(*fraction)];
             row.extend(published.map(|t| t.map_or(Cell::Nothing, Cell::Seconds)));
             row.extend([Cell::text(&model.name), Cell::Count(model.mesh.triangles.len() as u64)]);
-            match lab.offset(&model, *fraction, lab.settings.resolution)? {
+            match lab.offset(&model, *fraction, lab.fitted_grid())? {
                 Some(result) => {
                     let times = result.statistics.times;
                     row.extend(

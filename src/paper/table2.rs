@@ -4,6 +4,7 @@ use super::lab::{Lab, PUBLISHED_MACHINE};
 use super::models::PaperModel;
 use super::report::{Cell, Report};
 use crate::error::Error;
+use crate::offset::VoxelSize;
 
 /// The offset of the table, as a part of the diagonal.
 const OFFSET: f64 = 0.02;
@@ -45,7 +46,7 @@ pub(super) fn measure(lab: &Lab) -> Result<Report, Error> {
                 Cell::Count(model.mesh.triangles.len() as u64),
                 Cell::Count(cells.into()),
             ];
-            match lab.offset(&model, OFFSET, cells)? {
+            match lab.offset(&model, OFFSET, VoxelSize::Resolution(cells))? {
                 Some(result) => {
                     let times = result.statistics.times;
                     row.extend(

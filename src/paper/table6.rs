@@ -56,7 +56,7 @@ pub(super) fn measure(lab: &Lab) -> Result<Report, Error> {
                 Cell::text("here"),
                 Cell::text(&model.name),
             ];
-            let Some(field) = lab.field(&model, &distance, fraction, lab.settings.resolution)? else {
+            let Some(field) = lab.field(&model, &distance, fraction, lab.fitted_grid())? else {
                 row.extend([const { Cell::Nothing }; 7]);
                 report.push(row);
                 continue;

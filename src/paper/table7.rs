@@ -46,7 +46,7 @@ pub(super) fn measure(lab: &Lab) -> Result<Report, Error> {
         for &(fraction, mean, max) in rows {
             let mut row = vec![Cell::text(of.name()), Cell::text(faces), Cell::Number(fraction)];
             row.extend([Cell::Number(mean), Cell::Number(max), Cell::text(&model.name)]);
-            match lab.offset(&model, fraction, lab.settings.resolution)? {
+            match lab.offset(&model, fraction, lab.fitted_grid())? {
                 Some(result) => {
                     let (r, h) = (result.statistics.distance, result.statistics.voxel);
                     let found = errors(&distance, &result.mesh, r, lab.run)?;

@@ -28,6 +28,16 @@ fn numbers_name_the_tables() {
 }
 
 #[test]
+fn the_map_of_the_paper_names_files_that_exist() {
+    let text = std::fs::read_to_string("docs/paper.md").unwrap();
+    let names: Vec<&str> = text.split('`').filter(|part| part.starts_with("src/")).collect();
+    assert!(names.len() > 30, "{names:?}");
+    for name in names {
+        assert!(std::path::Path::new(name).is_file(), "{name}");
+    }
+}
+
+#[test]
 fn columns_of_a_table_have_different_names() {
     for table in [Table::Filters, Table::Intersections] {
         let report = coarse(table);
