@@ -193,6 +193,9 @@ pub(super) struct CompareArguments {
     /// Seconds after which a run is given up
     #[arg(long, value_name = "S", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=86_400))]
     pub timeout: u64,
+    /// Run a method only once if its first run took longer than this
+    #[arg(long, value_name = "S")]
+    pub once_above: Option<u64>,
     /// The Python interpreter that can import meshlib; without the package, MeshLib is left out
     #[arg(long, value_name = "PY", default_value = "python3")]
     pub python: PathBuf,

@@ -68,6 +68,7 @@ fn settings(arguments: &CompareArguments) -> CompareSettings {
         methods: if methods.is_empty() { Method::ALL.into() } else { methods },
         runs: arguments.runs,
         limit: Duration::from_secs(arguments.timeout),
+        once_above: arguments.once_above.map_or(Duration::MAX, Duration::from_secs),
     }
 }
 

@@ -53,6 +53,9 @@ pub struct CompareSettings {
     pub runs: u32,
     /// The time that a run may take.
     pub limit: Duration,
+    /// A method whose first run took longer than this is not run again: the scatter of long runs is small beside
+    /// what tells the methods apart.
+    pub once_above: Duration,
 }
 
 impl Default for CompareSettings {
@@ -65,6 +68,7 @@ impl Default for CompareSettings {
             runs: 3,
             // Ten times what the slowest peer takes at resolution 512.
             limit: Duration::from_secs(600),
+            once_above: Duration::MAX,
         }
     }
 }
@@ -176,7 +180,8 @@ pub fn compare(
     comparison.results = methods.into_iter().map(MethodResult::new).collect();
 
     for number in 1..=settings.runs {
-        for result in comparison.results.iter_mut().filter(|r| r.lost.is_none()) {
+        let again = |r: &MethodResult| r.runs.first().is_none_or(|m| m.engine <= settings.once_above.as_secs_f64());
+        for result in comparison.results.iter_mut().filter(|r| r.lost.is_none() && again(r)) {
             let method = result.method;
             watch(Event::Begin(number, method));
             let (distance, voxel) = (comparison.distance, comparison.voxel);
@@ -191,6 +196,12 @@ pub fn compare(
                     result.lost = Some(lost);
                 }
             }
+        }
+    }
+    for result in &comparison.results {
+        if result.lost.is_none() && result.runs.len() < settings.runs as usize {
+            let (title, seconds) = (result.method.title(), settings.once_above.as_secs());
+            comparison.notes.push(format!("{title}: run once only, because it took longer than {seconds} s"));
         }
     }
     for result in &mut comparison.results {
