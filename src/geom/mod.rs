@@ -1,4 +1,4 @@
-//! Geometry below everything else: points, triangles, swept spheres, roots, predicates, small matrices.
+//! Geometry below everything else: points, triangles and pairs of them, swept spheres, roots, predicates, small matrices.
 
 pub mod aabb;
 pub mod predicates;
@@ -6,3 +6,4 @@ pub mod roots;
 pub mod swept;
 pub mod sym3;
 pub mod triangle;
+pub mod triangle_pair;

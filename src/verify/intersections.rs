@@ -2,8 +2,9 @@
 
 use super::boxes::BoxTree;
 use super::report::{IntersectingPair, IntersectionReport};
-use super::triangle_pair::meeting_point;
 use super::welded::Welded;
+use crate::geom::triangle_pair;
+use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};
 
 /// Pairs that are located. More would only fill the screen.
@@ -32,6 +33,12 @@ impl Found {
         self.first.sort_unstable_by_key(|pair| pair.triangles);
         self.first.truncate(LOCATED);
     }
+}
+
+/// A point in which two triangles of a mesh meet elsewhere than in what they share.
+pub(super) fn meeting_point(mesh: &TriMesh, a: u32, b: u32) -> Option<[f64; 3]> {
+    let (va, vb) = (mesh.triangles[a as usize], mesh.triangles[b as usize]);
+    triangle_pair::meeting_point(va, mesh.corners(a as usize), vb, mesh.corners(b as usize))
 }
 
 /// The intersecting pairs of a mesh, from a tree over its triangles that have area.

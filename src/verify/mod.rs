@@ -29,7 +29,6 @@ mod shell;
 #[cfg(test)]
 pub(crate) mod tests;
 mod topology;
-mod triangle_pair;
 mod welded;
 
 pub use report::{

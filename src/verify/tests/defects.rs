@@ -78,7 +78,7 @@ fn two_spheres_pushed_through_each_other() {
     assert_eq!(found.topology.components, 2);
     let brute = (0..mesh.triangles.len() as u32)
         .flat_map(|a| (0..a).map(move |b| (b, a)))
-        .filter(|&(a, b)| crate::verify::triangle_pair::meeting_point(&mesh, a, b).is_some())
+        .filter(|&(a, b)| crate::verify::intersections::meeting_point(&mesh, a, b).is_some())
         .count();
     assert!(brute > 20);
     assert_eq!(found.intersections.pairs, brute as u64);

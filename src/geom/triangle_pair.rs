@@ -1,18 +1,15 @@
 //! Whether two triangles have more in common than the vertices and edges they share: exactly, by the signs of
 //! determinants. Only the point that is given back is rounded.
 
-use crate::geom::predicates::{orient2d, orient3d, project, projection_axis};
-use crate::mesh::TriMesh;
+use super::predicates::{orient2d, orient3d, project, projection_axis};
 
 type Point = [f64; 3];
 type Corners = [Point; 3];
 
-/// A point in which triangles `a` and `b` of `mesh` meet elsewhere than in what they share by vertex number,
-/// up to rounding; `None` if there is none, decided exactly. Both must have area and three different
-/// vertices. Triangles with three vertices in common always meet.
-pub(super) fn meeting_point(mesh: &TriMesh, a: u32, b: u32) -> Option<Point> {
-    let (va, vb) = (mesh.triangles[a as usize], mesh.triangles[b as usize]);
-    let (pa, pb) = (mesh.corners(a as usize), mesh.corners(b as usize));
+/// A point in which two triangles with vertex numbers `va` and `vb` and corners `pa` and `pb` meet elsewhere than
+/// in what they share by vertex number, up to rounding; `None` if there is none, decided exactly. Both must have
+/// area and three different vertices. Triangles with three vertices in common always meet.
+pub fn meeting_point(va: [u32; 3], pa: Corners, vb: [u32; 3], pb: Corners) -> Option<Point> {
     let mut shared = [(0, 0); 3];
     let mut count = 0;
     for (i, v) in va.iter().enumerate() {
