@@ -2,9 +2,13 @@
 
 use super::ContourStatistics;
 use super::cell::Edge;
+use super::feature::Normals;
+use super::features::{FeatureVertex, Features};
 use super::grid::Grid;
 use super::numbering::{CellId, CellNumbers, CornerSigns, constant_case, locate};
+use super::recover::Wish;
 use super::sheets::{Case, CaseId, CaseTable};
+use super::surface::{Creases, Surface};
 use super::vertex::{self, Placement};
 use crate::band::{Ijk, LeafId, SignField};
 use crate::edge::{Crossings, bits};
@@ -21,6 +25,10 @@ pub struct Cells<'a> {
     pub grid: Grid,
     /// The numbering of the cells.
     pub numbers: &'a CellNumbers,
+    /// The surface, if there is one to ask.
+    pub surface: Option<&'a dyn Surface>,
+    /// The vertices on creases and corners.
+    pub features: Features,
     cases: Vec<CellCase>,
 }
 
@@ -30,6 +38,16 @@ struct CellCase {
     /// The number of the vertex of sheet 0; the other sheets' follow.
     first_vertex: u32,
     case: CaseId,
+}
+
+/// The vertices of all sheets.
+pub struct Placements {
+    /// Positions, by vertex number.
+    pub vertices: Vec<[f64; 3]>,
+    /// By leaf the vertices that ought to be elsewhere.
+    pub wishes: Vec<Vec<Wish>>,
+    /// Counts of cells and vertices by kind.
+    pub statistics: ContourStatistics,
 }
 
 impl<'a> Cells<'a> {
@@ -43,15 +61,18 @@ impl<'a> Cells<'a> {
         crossings: &'a Crossings,
         grid: Grid,
         numbers: &'a CellNumbers,
+        surface: Option<&'a dyn Surface>,
         phase: &PhaseGuard<'_>,
-    ) -> Result<(Cells<'a>, Vec<[f64; 3]>, ContourStatistics), Cancelled> {
-        let mut cells = Cells { signs, crossings, grid, numbers, cases: Vec::new() };
+    ) -> Result<(Cells<'a>, Placements), Cancelled> {
+        let creases = surface.map_or(Creases::Both, |s| s.creases());
+        let features = Features::new(Vec::new(), 0, creases);
+        let mut cells = Cells { signs, crossings, grid, numbers, surface, features, cases: Vec::new() };
         let mut cases = vec![CellCase::default(); numbers.len()];
         let mut vertices = vec![[0.0; 3]; numbers.vertices() as usize];
         let leaves: Vec<LeafId> = signs.leaves().collect();
         let case_slices = split(&mut cases, leaves.iter().map(|&leaf| numbers.range(leaf).len()));
         let vertex_slices = split(&mut vertices, leaves.iter().map(|&leaf| numbers.vertex_range(leaf).len()));
-        let statistics = leaves
+        let placed: Vec<(Vec<Wish>, Vec<FeatureVertex>, ContourStatistics)> = leaves
             .par_iter()
             .zip(case_slices)
             .zip(vertex_slices)
@@ -60,12 +81,18 @@ impl<'a> Cells<'a> {
                 phase.advance(1)?;
                 Ok(cells.place_in_leaf(leaf, cases, vertices))
             })
-            .try_reduce(ContourStatistics::default, |mut a, b| {
-                a += b;
-                Ok(a)
-            })?;
+            .collect::<Result<_, Cancelled>>()?;
         cells.cases = cases;
-        Ok((cells, vertices, statistics))
+        let mut statistics = ContourStatistics::default();
+        let mut wishes = Vec::with_capacity(placed.len());
+        let mut features = Vec::new();
+        for (wished, found, counts) in placed {
+            wishes.push(wished);
+            features.extend(found);
+            statistics += counts;
+        }
+        cells.features = Features::new(features, vertices.len(), creases);
+        Ok((cells, Placements { vertices, wishes, statistics }))
     }
 
     /// The case of `cell`.
@@ -87,10 +114,13 @@ impl<'a> Cells<'a> {
         leaf: LeafId,
         cases: &mut [CellCase],
         vertices: &mut [[f64; 3]],
-    ) -> ContourStatistics {
+    ) -> (Vec<Wish>, Vec<FeatureVertex>, ContourStatistics) {
         let Cells { signs, crossings, grid, numbers, .. } = self;
         let mut statistics = ContourStatistics { cells: cases.len() as u64, ..Default::default() };
-        let Some(corners) = CornerSigns::new(signs, leaf) else { return statistics };
+        let (mut wishes, mut features) = (Vec::new(), Vec::new());
+        let Some(corners) = CornerSigns::new(signs, leaf) else {
+            return (wishes, features, statistics);
+        };
         let table = CaseTable::get();
         let first_vertex = numbers.vertex_range(leaf).start as u32;
         let mut done = 0;
@@ -106,14 +136,23 @@ impl<'a> Cells<'a> {
                 crossings.sample(id)
             };
             for sheet in 0..case.sheets().len() {
-                let (position, placement) =
-                    vertex::place(grid, signs.origin(leaf) + local, case, sheet, crossing);
-                vertices[done] = position;
+                let at = signs.origin(leaf) + local;
+                let placed = vertex::place(grid, at, case, sheet, crossing, self.surface);
+                vertices[done] = placed.position;
+                if let Some(feature) = placed.feature {
+                    let vertex = first_vertex + done as u32;
+                    features.push(FeatureVertex { vertex, feature });
+                    if placed.placement == Placement::Clamped {
+                        wishes.push(Wish { vertex, place: Some(feature.point) });
+                    } else if feature.normals == Normals::default() {
+                        wishes.push(Wish { vertex, place: None });
+                    }
+                }
                 done += 1;
-                statistics.clamped += u64::from(placement == Placement::Clamped);
+                statistics.clamped += u64::from(placed.placement == Placement::Clamped);
             }
         }
-        statistics
+        (wishes, features, statistics)
     }
 }
 

@@ -45,7 +45,8 @@ pub fn cut_times<const N: usize>(
     let phase = run.phase(Phase::Contour, 2 * signs.len() as u64);
     run.install(|| {
         let numbers = CellNumbers::new(signs, run)?;
-        let (cells, mut vertices, _) = Cells::place(signs, crossings, grid, &numbers, &phase)?;
+        let (cells, placed) = Cells::place(signs, crossings, grid, &numbers, None, &phase)?;
+        let mut vertices = placed.vertices;
         let mut faces = face_vertex::face_vertices(&cells, &vertices, run)?;
         vertices.append(&mut faces.positions);
         let mut times = [CutTimes::default(); N];
@@ -77,8 +78,8 @@ pub fn cut_times<const N: usize>(
 
 fn cut_all(polygons: &[EdgePolygon], method: CutMethod, triangles: &mut Vec<[u32; 3]>) -> u64 {
     let mut split = 0;
-    for EdgePolygon { polygon, envelope, tangent, .. } in polygons {
-        split += u64::from(polygonize(polygon, envelope, tangent, method, triangles) == Cut::Split);
+    for EdgePolygon { polygon, envelope, fit, .. } in polygons {
+        split += u64::from(polygonize(polygon, envelope, fit, method, triangles) == Cut::Split);
     }
     split
 }

@@ -34,29 +34,37 @@ mod cells;
 mod cut_times;
 mod envelope;
 mod face_vertex;
+mod feature;
+mod features;
 mod grid;
 mod numbering;
 mod output;
+mod patch;
 mod polygon_edges;
 mod polygonize;
 mod qef;
+mod recover;
 mod region;
 mod sheets;
 mod statistics;
+mod surface;
 mod vertex;
 
 pub use cut_times::{CutTimes, cut_times};
 pub use grid::Precision;
 pub use polygonize::CutMethod;
 pub use statistics::ContourStatistics;
+pub use surface::{Creases, Surface};
 
 use crate::band::{Lattice, SignField};
 use crate::edge::Crossings;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, Phase, RunSettings};
-use cells::Cells;
+use cells::{Cells, Placements};
 use grid::Grid;
 use numbering::CellNumbers;
+use output::Triangulation;
+use recover::Wish;
 
 /// Settings of [`contour`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -112,6 +120,7 @@ pub fn contour(
     signs: &SignField,
     crossings: &Crossings,
     lattice: Lattice,
+    surface: Option<&dyn Surface>,
     settings: &ContourSettings,
     run: &RunSettings,
 ) -> Result<(TriMesh, ContourStatistics), ContourError> {
@@ -120,12 +129,27 @@ pub fn contour(
     let phase = run.phase(Phase::Contour, 2 * signs.len() as u64);
     run.install(|| {
         let numbers = CellNumbers::new(signs, run)?;
-        let (cells, mut vertices, mut statistics) = Cells::place(signs, crossings, grid, &numbers, &phase)?;
+        let (cells, placed) = Cells::place(signs, crossings, grid, &numbers, surface, &phase)?;
+        let Placements { mut vertices, mut wishes, mut statistics } = placed;
         let mut faces = face_vertex::face_vertices(&cells, &vertices, run)?;
         vertices.append(&mut faces.positions);
         statistics.face_vertices = vertices.len() as u64 - u64::from(numbers.vertices());
-        let (mesh, polygons) = output::triangulate(&cells, &faces, vertices, settings.cut, &phase)?;
+        let Triangulation { mut mesh, ranges, far, statistics: polygons } =
+            output::triangulate(&cells, &faces, vertices, settings.cut, &phase)?;
         statistics += polygons;
+        if let Some(surface) = surface {
+            for (wishes, far) in wishes.iter_mut().zip(far) {
+                wishes.extend(far.into_iter().map(|vertex| Wish { vertex, place: None }));
+                // A vertex with a place comes before the same one without.
+                wishes.sort_by_key(|wish| (wish.vertex, wish.place.is_none()));
+                wishes.dedup_by_key(|wish| wish.vertex);
+            }
+            let recovered = recover::recover(&cells, surface, &wishes, &ranges, &mut mesh, run)?;
+            statistics.recovered = recovered.granted;
+            statistics.refused = recovered.refused;
+            statistics.flipped = recovered.flipped;
+            statistics.refined = recovered.split;
+        }
         statistics.vertices = mesh.vertices.len() as u64;
         statistics.triangles = mesh.triangles.len() as u64;
         Ok((mesh, statistics))

@@ -4,7 +4,8 @@ use super::cell::Edge;
 use super::cells::{Cells, split};
 use super::envelope::Envelope;
 use super::face_vertex::FaceVertices;
-use super::polygonize::{Cut, CutMethod, EDGE_VERTEX, Polygon, PolygonCorner, Tangent, polygonize};
+use super::feature::Asker;
+use super::polygonize::{Cut, CutMethod, EDGE_VERTEX, Fit, Polygon, PolygonCorner, polygonize};
 use super::{ContourError, ContourStatistics, TooManyVertices};
 use crate::band::{Axis, Ijk, LeafId};
 use crate::edge::EdgeId;
@@ -18,8 +19,23 @@ struct LeafOutput {
     /// Vertex numbers; from the number of cell and face vertices on, they count the leaf's edge vertices.
     triangles: Vec<[u32; 3]>,
     edge_vertices: Vec<[f64; 3]>,
+    /// Feature vertices of polygons that are far from the surface.
+    far: Vec<u32>,
     /// Polygons.
     quads: u64,
+}
+
+/// The mesh, and what is known of its parts.
+#[derive(Debug)]
+pub struct Triangulation {
+    /// The mesh.
+    pub mesh: TriMesh,
+    /// The number of the first triangle of each leaf, and the number of all at the end.
+    pub ranges: Vec<usize>,
+    /// By leaf the feature vertices of polygons that are far from the surface.
+    pub far: Vec<Vec<u32>>,
+    /// Counts.
+    pub statistics: ContourStatistics,
 }
 
 /// The mesh over the cell and face vertices `vertices`, to which edge vertices are added.
@@ -32,9 +48,9 @@ pub fn triangulate(
     mut vertices: Vec<[f64; 3]>,
     method: CutMethod,
     phase: &PhaseGuard<'_>,
-) -> Result<(TriMesh, ContourStatistics), ContourError> {
+) -> Result<Triangulation, ContourError> {
     let leaves: Vec<LeafId> = cells.signs.leaves().collect();
-    let outputs: Vec<LeafOutput> = leaves
+    let mut outputs: Vec<LeafOutput> = leaves
         .par_iter()
         .with_min_len(16)
         .map(|&leaf| {
@@ -53,10 +69,16 @@ pub fn triangulate(
     let shared = vertices.len() as u32;
     vertices.reserve_exact(hubs);
     let mut firsts = Vec::with_capacity(outputs.len());
+    let mut ranges = Vec::with_capacity(outputs.len() + 1);
+    let mut next = 0;
     for output in &outputs {
+        ranges.push(next);
+        next += output.triangles.len();
         firsts.push(vertices.len() as u32 - shared);
         vertices.extend_from_slice(&output.edge_vertices);
     }
+    ranges.push(next);
+    let far = outputs.iter_mut().map(|output| std::mem::take(&mut output.far)).collect();
     let mut triangles = vec![[0; 3]; count];
     let parts = split(&mut triangles, outputs.iter().map(|o| o.triangles.len()));
     outputs.into_par_iter().zip(firsts).zip(parts).with_min_len(16).for_each(|((output, first), part)| {
@@ -70,7 +92,7 @@ pub fn triangulate(
         split: hubs as u64,
         ..ContourStatistics::default()
     };
-    Ok((TriMesh { vertices, triangles }, statistics))
+    Ok(Triangulation { mesh: TriMesh { vertices, triangles }, ranges, far, statistics })
 }
 
 fn in_leaf(
@@ -83,21 +105,62 @@ fn in_leaf(
     let count = cells.crossings.numbers.range(leaf).len();
     let mut output = LeafOutput { triangles: Vec::with_capacity(2 * count), ..LeafOutput::default() };
     let grid = &cells.grid;
-    for_polygons(cells, faces, vertices, leaf, |EdgePolygon { polygon, envelope, tangent, node, along }| {
-        let first = output.triangles.len();
-        if polygonize(&polygon, &envelope, &tangent, method, &mut output.triangles) == Cut::Split {
-            let vertex = (vertices.len() + output.edge_vertices.len()) as u32;
-            for corner in output.triangles[first..].as_flattened_mut() {
-                if *corner == EDGE_VERTEX {
-                    *corner = vertex;
-                }
+    for_polygons(
+        cells,
+        faces,
+        vertices,
+        leaf,
+        |EdgePolygon { polygon, envelope, fit, hint, node, along }| {
+            let first = output.triangles.len();
+            let cut = polygonize(&polygon, &envelope, &fit, method, &mut output.triangles);
+            let hub = grid.between_walls(node, on_axis(along.0, grid.clamp(along.1)));
+            if let Some(surface) = cells.surface
+                && !fit.sides.is_empty()
+            {
+                let corners = polygon.corners();
+                let position = |v| corners.iter().find(|c| c.vertex == v).map_or(hub, |c| c.position);
+                let mut ask = Asker { surface, origin: fit.point, voxel: grid.voxel(), hint, count: 0 };
+                let far = is_far(&output.triangles[first..], position, &fit, &mut ask);
+                output.far.extend(corners.iter().filter_map(|corner| {
+                    let is_feature = cells.features.get(corner.vertex).is_some();
+                    (far && is_feature || is_far_at(corner.position, &fit, &mut ask)).then_some(corner.vertex)
+                }));
             }
-            let (axis, t) = along;
-            output.edge_vertices.push(grid.between_walls(node, on_axis(axis, grid.clamp(t))));
-        }
-        output.quads += 1;
-    });
+            if cut == Cut::Split {
+                let vertex = (vertices.len() + output.edge_vertices.len()) as u32;
+                for corner in output.triangles[first..].as_flattened_mut() {
+                    if *corner == EDGE_VERTEX {
+                        *corner = vertex;
+                    }
+                }
+                output.edge_vertices.push(hub);
+            }
+            output.quads += 1;
+        },
+    );
     output
+}
+
+/// Polygons with a place that is farther from the surface than this, in voxels, are looked at again.
+const FAR: f64 = 0.04;
+
+/// Whether a point is far from the surface. What the features of the polygon say is asked first; the surface
+/// itself has the last word.
+fn is_far_at(p: [f64; 3], fit: &Fit, ask: &mut Asker) -> bool {
+    fit.sides.distance(p) > FAR * ask.voxel && {
+        let local = std::array::from_fn(|i| (p[i] - ask.origin[i]) / ask.voxel);
+        ask.at(local).0.abs() > FAR
+    }
+}
+
+/// Whether the middle of a triangle or of one of its sides is far from the surface.
+fn is_far(triangles: &[[u32; 3]], position: impl Fn(u32) -> [f64; 3], fit: &Fit, ask: &mut Asker) -> bool {
+    triangles.iter().any(|t| {
+        let [a, b, c] = t.map(&position);
+        let middle = |p: [f64; 3], q: [f64; 3]| std::array::from_fn(|i| 0.5 * (p[i] + q[i]));
+        let centre = std::array::from_fn(|i| (a[i] + b[i] + c[i]) / 3.0);
+        [centre, middle(a, b), middle(b, c), middle(c, a)].into_iter().any(|p| is_far_at(p, fit, ask))
+    })
 }
 
 /// The polygon around a crossed edge, and what decides how it is cut.
@@ -108,7 +171,9 @@ pub struct EdgePolygon {
     /// The edge's envelope.
     pub envelope: Envelope,
     /// The surface at the crossing.
-    pub tangent: Tangent,
+    pub fit: Fit,
+    /// See [`Crossing::hint`](crate::edge::Crossing).
+    hint: u32,
     /// The edge's lower node.
     node: Ijk,
     /// The crossing, in voxels from that node.
@@ -141,8 +206,9 @@ pub fn for_polygons(
         let polygon = polygon(cells, faces, vertices, leaf, local, axis, outside);
         let sample = cells.crossings.sample(id);
         let point = grid.ideal(node, on_axis(axis, sample.t));
-        let tangent = Tangent::new(point, sample.normal.map(f64::from), grid.voxel());
-        visit(EdgePolygon { polygon, envelope, tangent, node, along: (axis, sample.t) });
+        let sides = cells.features.sides(polygon.corners().iter().map(|c| c.vertex));
+        let fit = Fit::new(point, sample.normal.map(f64::from), sides, grid.voxel());
+        visit(EdgePolygon { polygon, envelope, fit, hint: sample.hint, node, along: (axis, sample.t) });
     }
 }
 

@@ -1,6 +1,7 @@
 //! From the polygon around a crossed grid edge to triangles.
 
 use super::envelope::Envelope;
+use super::features::Sides;
 use super::polygon_edges;
 use super::qef::dot;
 
@@ -12,6 +13,10 @@ const MAX_CORNERS: usize = 8;
 /// rounding, and choosing by noise gives ragged meshes; a crease whose diagonals differ by less is not
 /// visible.
 const SAME_DISTANCE: f64 = 1e-4;
+
+/// The same for distances from sides that may be curved. At radii of 7 voxels the middle of a diagonal is up to
+/// this far from the planes at its ends.
+const SAME_AS_CURVED: f64 = 0.05;
 
 /// A corner of a polygon.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -56,36 +61,43 @@ impl Polygon {
     }
 }
 
-/// The surface's tangent plane where it crosses the grid edge.
+/// What is known of the surface around a crossed grid edge: its tangent plane at the crossing, and the sides of
+/// the creases that its cells see.
 #[derive(Clone, Copy, Debug)]
-pub struct Tangent {
+pub struct Fit {
     /// The crossing, as it was given.
     pub point: [f64; 3],
     /// The unit normal there.
     pub normal: [f64; 3],
-    /// Distances closer than this are equal.
-    pub tolerance: f64,
+    /// The sides of creases nearby.
+    pub sides: Sides,
+    /// Distances from the sides, and from the plane, that differ by less are equal.
+    pub tolerances: [f64; 2],
 }
 
-impl Tangent {
-    /// The tangent plane at a crossing, on a lattice with the given voxel size.
-    pub fn new(point: [f64; 3], normal: [f64; 3], voxel: f64) -> Tangent {
-        Tangent { point, normal, tolerance: SAME_DISTANCE * voxel }
+impl Fit {
+    /// The surface at a crossing, on a lattice with the given voxel size.
+    pub fn new(point: [f64; 3], normal: [f64; 3], sides: Sides, voxel: f64) -> Fit {
+        Fit { point, normal, sides, tolerances: [SAME_AS_CURVED * voxel, SAME_DISTANCE * voxel] }
     }
 
-    /// How badly a diagonal fits: its midpoint's distance from the tangent plane. A diagonal along a crease
-    /// lies in the planes on both sides of it; one across a crease cuts through the solid or the air.
-    fn misfit(&self, a: [f64; 3], b: [f64; 3]) -> f64 {
-        let offset = std::array::from_fn(|i| 0.5 * (a[i] + b[i]) - self.point[i]);
-        dot(self.normal, offset).abs()
+    /// How badly a diagonal fits: how far its midpoint is from the sides, and from the tangent plane. A diagonal
+    /// along a crease lies in the planes on both sides of it; one across a crease cuts through the solid or the
+    /// air.
+    fn misfit(&self, [a, b]: [[f64; 3]; 2]) -> [f64; 2] {
+        let middle = std::array::from_fn(|i| 0.5 * (a[i] + b[i]));
+        let offset = std::array::from_fn(|i| middle[i] - self.point[i]);
+        let from_sides = if self.sides.is_empty() { 0.0 } else { self.sides.distance(middle) };
+        [from_sides, dot(self.normal, offset).abs()]
     }
 
-    /// Whether the diagonal `second` is better than `first`: closer to the tangent plane, or as close and
-    /// shorter.
+    /// Whether the diagonal `second` is better than `first`: closer to the surface, or as close and shorter.
     fn prefers(&self, second: [[f64; 3]; 2], first: [[f64; 3]; 2]) -> bool {
-        let difference = self.misfit(second[0], second[1]) - self.misfit(first[0], first[1]);
-        if difference.abs() > self.tolerance {
-            return difference < 0.0;
+        let (a, b) = (self.misfit(first), self.misfit(second));
+        for i in 0..2 {
+            if (a[i] - b[i]).abs() > self.tolerances[i] {
+                return b[i] < a[i];
+            }
         }
         length2(second) < length2(first)
     }
@@ -124,15 +136,15 @@ pub enum CutMethod {
 pub fn polygonize(
     polygon: &Polygon,
     envelope: &Envelope,
-    tangent: &Tangent,
+    fit: &Fit,
     method: CutMethod,
     triangles: &mut Vec<[u32; 3]>,
 ) -> Cut {
     let cut = match method {
-        CutMethod::ConvexConcave if polygon.len > 4 => return ears(polygon, envelope, tangent, triangles),
-        CutMethod::ConvexConcave => quad(polygon, tangent, is_good(envelope)),
+        CutMethod::ConvexConcave if polygon.len > 4 => return ears(polygon, envelope, fit, triangles),
+        CutMethod::ConvexConcave => quad(polygon, fit, is_good(envelope)),
         CutMethod::PolygonEdges if polygon.len > 4 => None,
-        CutMethod::PolygonEdges => quad(polygon, tangent, |quad| polygon_edges::is_legal(quad, envelope)),
+        CutMethod::PolygonEdges => quad(polygon, fit, |quad| polygon_edges::is_legal(quad, envelope)),
     };
     match cut {
         Some(cut) => {
@@ -149,16 +161,16 @@ fn is_good(envelope: &Envelope) -> impl Fn([[f64; 3]; 4]) -> bool {
 }
 
 /// Cuts a polygon with face vertices: good ears first, the rest as a quad or around the edge's vertex.
-fn ears(polygon: &Polygon, envelope: &Envelope, tangent: &Tangent, triangles: &mut Vec<[u32; 3]>) -> Cut {
+fn ears(polygon: &Polygon, envelope: &Envelope, fit: &Fit, triangles: &mut Vec<[u32; 3]>) -> Cut {
     let first = triangles.len();
     let mut rest = *polygon;
     while rest.len > 4 {
-        let Some(ear) = best_ear(&rest, envelope, tangent) else { break };
+        let Some(ear) = best_ear(&rest, envelope, fit) else { break };
         triangles.push(rest.ear(ear).map(|c| c.vertex));
         rest.remove(ear);
     }
     if rest.len == 4
-        && let Some(cut) = quad(&rest, tangent, is_good(envelope))
+        && let Some(cut) = quad(&rest, fit, is_good(envelope))
     {
         triangles.extend(cut);
         return Cut::Diagonals;
@@ -176,15 +188,11 @@ fn ears(polygon: &Polygon, envelope: &Envelope, tangent: &Tangent, triangles: &m
 /// The two triangles of the better legal diagonal of a quad; `None` without a legal one. `is_legal` judges
 /// the diagonal from the first to the third corner.
 #[inline]
-fn quad(
-    polygon: &Polygon,
-    tangent: &Tangent,
-    is_legal: impl Fn([[f64; 3]; 4]) -> bool,
-) -> Option<[[u32; 3]; 2]> {
+fn quad(polygon: &Polygon, fit: &Fit, is_legal: impl Fn([[f64; 3]; 4]) -> bool) -> Option<[[u32; 3]; 2]> {
     let corner = |i: usize| polygon.corners[i & 3];
     // The diagonal from corner i to corner i + 2.
     let diagonal = |i: usize| [corner(i).position, corner(i + 2).position];
-    let first = usize::from(tangent.prefers(diagonal(1), diagonal(0)));
+    let first = usize::from(fit.prefers(diagonal(1), diagonal(0)));
     [first, first ^ 1].into_iter().find_map(|i| {
         let [a, b, c, d] = [corner(i), corner(i + 1), corner(i + 2), corner(i + 3)];
         is_legal([a, b, c, d].map(|corner| corner.position))
@@ -193,11 +201,11 @@ fn quad(
 }
 
 /// The good ear whose diagonal fits the surface best.
-fn best_ear(polygon: &Polygon, envelope: &Envelope, tangent: &Tangent) -> Option<usize> {
+fn best_ear(polygon: &Polygon, envelope: &Envelope, fit: &Fit) -> Option<usize> {
     let mut best: Option<(usize, [[f64; 3]; 2])> = None;
     for i in 0..polygon.len {
         let [a, b, c] = polygon.ear(i).map(|c| c.position);
-        if envelope.is_good(a, b, c) && best.is_none_or(|(_, other)| tangent.prefers([a, c], other)) {
+        if envelope.is_good(a, b, c) && best.is_none_or(|(_, other)| fit.prefers([a, c], other)) {
             best = Some((i, [a, c]));
         }
     }
@@ -224,8 +232,8 @@ mod tests {
             polygon.push(PolygonCorner { vertex, position });
         }
         let mut triangles = Vec::new();
-        let tangent = Tangent::new([0.0, 0.0, 0.5], normal, 1.0);
-        (polygonize(&polygon, &ENVELOPE, &tangent, CutMethod::ConvexConcave, &mut triangles), triangles)
+        let fit = Fit::new([0.0, 0.0, 0.5], normal, Sides::NONE, 1.0);
+        (polygonize(&polygon, &ENVELOPE, &fit, CutMethod::ConvexConcave, &mut triangles), triangles)
     }
 
     #[test]

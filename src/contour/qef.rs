@@ -57,10 +57,19 @@ impl Qef {
         self.right = add(self.right, distance, normal);
     }
 
+    /// The mean of the added points, at least one.
+    pub fn mean(&self) -> [f64; 3] {
+        self.points.map(|x| x / self.count)
+    }
+
     /// The least point of the function, nearest to the mean of the added points where it is not unique.
     /// At least one plane must have been added.
     pub fn minimiser(&self) -> Minimiser {
-        let mean = self.points.map(|x| x / self.count);
+        self.minimiser_near(self.mean())
+    }
+
+    /// The least point of the function, nearest to `mean` where it is not unique.
+    pub fn minimiser_near(&self, mean: [f64; 3]) -> Minimiser {
         let right = add(self.right, -1.0, self.matrix.times(mean));
         let eigen = self.matrix.eigen();
         let largest = eigen.values[0];
@@ -90,6 +99,12 @@ pub struct Minimiser {
 }
 
 impl Minimiser {
+    /// How much the planes differ in direction: the second eigenvalue as a part of the largest.
+    #[inline]
+    pub fn spread(&self) -> f64 {
+        self.weights[1]
+    }
+
     /// The least point within the intersection of `region`, up to a rounding error; `None` when none is
     /// found, as when the intersection is empty.
     ///
@@ -195,8 +210,9 @@ fn add(a: [f64; 3], scale: f64, b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| a[i] + scale * b[i])
 }
 
+/// The outer product.
 #[inline]
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 

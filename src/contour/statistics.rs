@@ -20,6 +20,14 @@ pub struct ContourStatistics {
     pub face_vertices: u64,
     /// Cell vertices whose error function is least outside their cell or their walls.
     pub clamped: u64,
+    /// Vertices moved out of their cells to the crease or corner that they belong to.
+    pub recovered: u64,
+    /// Vertices that belong outside of their cells and could not be moved there.
+    pub refused: u64,
+    /// Edges flipped along a crease.
+    pub flipped: u64,
+    /// Vertices added where the surface was too far away.
+    pub refined: u64,
     /// Vertices of the result.
     pub vertices: u64,
     /// Triangles of the result.
@@ -35,6 +43,10 @@ impl AddAssign for ContourStatistics {
         self.split += other.split;
         self.face_vertices += other.face_vertices;
         self.clamped += other.clamped;
+        self.recovered += other.recovered;
+        self.refused += other.refused;
+        self.flipped += other.flipped;
+        self.refined += other.refined;
         self.vertices += other.vertices;
         self.triangles += other.triangles;
     }

@@ -2,10 +2,14 @@
 //! walls allow.
 
 use super::cell::{Edge, EdgeSet};
+use super::feature::{
+    Asker, Feature, Normals, SPREAD, disagreement, feature, nearest, samples, sees_several_sides,
+};
 use super::grid::Grid;
-use super::qef::Qef;
+use super::qef::{Minimiser, Qef};
 use super::region::Region;
 use super::sheets::Case;
+use super::surface::Surface;
 use crate::band::Ijk;
 use crate::edge::Crossing;
 
@@ -23,6 +27,10 @@ const HALVINGS: i32 = 12;
 /// Steps from the mean of the crossings to the mean of the midpoints of their edges.
 const STEPS_TO_MIDDLE: i32 = 8;
 
+/// Planes that miss the minimiser by more than this, in voxels, do not meet: a side of the surface ends before.
+/// Spheres with a radius of 4 voxels have 0.04.
+const UNSURE: f64 = 0.05;
+
 /// Whether a vertex lies at the minimiser of its error function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Placement {
@@ -32,22 +40,73 @@ pub enum Placement {
     Clamped,
 }
 
-/// The position of the vertex of sheet number `sheet` of a cell, rounded. `crossing` gives the sample of
-/// each of the sheet's edges.
+/// A vertex in its cell, and where it ought to be.
+#[derive(Clone, Copy, Debug)]
+pub struct Placed {
+    /// The position, rounded.
+    pub position: [f64; 3],
+    /// Whether that is where the error function is least.
+    pub placement: Placement,
+    /// The feature that it stands for, if there is one: the point, rounded, and the sides that meet there.
+    pub feature: Option<Feature>,
+}
+
+/// The position of the vertex of sheet number `sheet` of a cell. `crossing` gives the sample of each of the
+/// sheet's edges.
 pub fn place<'a>(
     grid: &Grid,
     cell: Ijk,
     case: &Case,
     sheet: usize,
     crossing: impl Fn(Edge) -> &'a Crossing,
-) -> ([f64; 3], Placement) {
+    surface: Option<&dyn Surface>,
+) -> Placed {
     let edges = case.sheets()[sheet].edges;
     let mut qef = Qef::default();
     for edge in edges.iter() {
         let sample = crossing(edge);
         qef.add(on_edge(edge, unit(sample.t)), sample.normal.map(f64::from));
     }
-    let minimiser = qef.minimiser();
+    let mut minimiser = qef.minimiser();
+    let mut found = None;
+    if let Some(surface) = surface {
+        let points = edges.iter().map(|edge| (on_edge(edge, unit(crossing(edge).t)), crossing(edge)));
+        let samples = samples(points);
+        let is_feature = minimiser.spread() > SPREAD;
+        let is_unsure = disagreement(&samples, minimiser.point) > UNSURE;
+        if is_feature || is_unsure {
+            let hint = edges.iter().next().map_or(0, |edge| crossing(edge).hint);
+            let origin = grid.ideal(cell, [0.0; 3]);
+            let mut ask = Asker { surface, origin, voxel: grid.voxel(), hint, count: 0 };
+            if is_feature {
+                found = feature(&mut ask, &samples, minimiser.point, qef.mean());
+            }
+            if found.is_none() && (is_unsure || sees_several_sides(&samples)) {
+                // Not where the planes meet, but at least on the surface.
+                let (position, _) = in_cell(grid, cell, case, sheet, &crossing, &minimiser);
+                let point = nearest(&mut ask, grid.local(cell, position));
+                found = point.map(|point| Feature { point, normals: Normals::default() });
+            }
+        }
+    }
+    if let Some(feature) = found {
+        minimiser.point = feature.point;
+    }
+    let (position, placement) = in_cell(grid, cell, case, sheet, crossing, &minimiser);
+    let feature = found.map(|f| Feature { point: grid.round_ideal(cell, f.point), ..f });
+    Placed { position, placement, feature }
+}
+
+/// The position nearest to the minimiser that a cell and its walls allow, rounded.
+fn in_cell<'a>(
+    grid: &Grid,
+    cell: Ijk,
+    case: &Case,
+    sheet: usize,
+    crossing: impl Fn(Edge) -> &'a Crossing,
+    minimiser: &Minimiser,
+) -> ([f64; 3], Placement) {
+    let edges = case.sheets()[sheet].edges;
     let margin = grid.margin();
     if !case.has_several_sheets() {
         let inside = |x: f64| (margin..=1.0 - margin).contains(&x);

@@ -108,7 +108,7 @@ pub fn solve_by(
 ) -> Result<(Crossings, EdgeStatistics), Cancelled> {
     let EdgeSettings { lattice, r, method } = *settings;
     let solver = Solver { distance, r, voxel: lattice.voxel };
-    let mut samples = vec![Crossing { t: 0.0, normal: [0.0; 3] }; numbers.len()];
+    let mut samples = vec![Crossing { t: 0.0, normal: [0.0; 3], hint: 0 }; numbers.len()];
     let mut rest: &mut [Crossing] = &mut samples;
     let mut tasks: Vec<(LeafId, &mut [Crossing])> = Vec::new();
     for leaf in signs.leaves() {
@@ -186,6 +186,6 @@ impl LeafSolver<'_> {
             }
         };
         let t = if forward { root.t } else { 1.0 - root.t };
-        Crossing { t, normal: root.normal.as_vec3().to_array() }
+        Crossing { t, normal: root.normal.as_vec3().to_array(), hint: *guess }
     }
 }

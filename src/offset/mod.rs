@@ -11,6 +11,7 @@
 pub(crate) mod narrow_band;
 mod settings;
 mod statistics;
+mod surface;
 #[cfg(test)]
 mod tests;
 mod unsuitable;
@@ -28,6 +29,7 @@ use crate::mesh::{Topology, TriMesh};
 use crate::run::{Phase, RunSettings};
 use crate::vdb::Band;
 use std::time::Instant;
+use surface::OffsetSurface;
 
 /// What [`offset`] returns.
 #[derive(Debug)]
@@ -83,7 +85,8 @@ pub fn offset(mesh: &TriMesh, settings: &OffsetSettings, run: &RunSettings) -> R
 
     let started = Instant::now();
     let contour_settings = ContourSettings { precision: settings.precision, ..ContourSettings::default() };
-    let (mesh, contour) = contour(&signs, &crossings, lattice, &contour_settings, run)?;
+    let surface = OffsetSurface { distance: &distance, r, vanishing: 1e-4 * lattice.voxel };
+    let (mesh, contour) = contour(&signs, &crossings, lattice, Some(&surface), &contour_settings, run)?;
     times.contour = started.elapsed().as_secs_f64();
 
     let vdb = VdbStatistics::of(&band);

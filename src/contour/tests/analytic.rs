@@ -229,17 +229,20 @@ fn stops_when_cancelled_and_when_too_far() {
     let settings = ContourSettings::default();
     let cancelled = RunSettings::with_threads(1).unwrap();
     cancelled.cancel_token().cancel();
-    let result = contour(&signs, &crossings, Lattice { voxel: 1.0 }, &settings, &cancelled);
+    let result = contour(&signs, &crossings, Lattice { voxel: 1.0 }, None, &settings, &cancelled);
     assert!(matches!(result, Err(ContourError::Cancelled(_))));
 
     let far =
         super::fields::signs(crate::band::Ijk([3_000_000; 3]), crate::band::Ijk([3_000_001; 3]), |_| true);
-    let crossings =
-        super::fields::crossings(&far, |_, _| crate::edge::Crossing { t: 0.5, normal: [1.0, 0.0, 0.0] });
+    let crossings = super::fields::crossings(&far, |_, _| crate::edge::Crossing {
+        t: 0.5,
+        normal: [1.0, 0.0, 0.0],
+        hint: 0,
+    });
     let run = RunSettings::with_threads(1).unwrap();
-    let result = contour(&far, &crossings, Lattice { voxel: 0.1 }, &settings, &run);
+    let result = contour(&far, &crossings, Lattice { voxel: 0.1 }, None, &settings, &run);
     assert!(matches!(result, Err(ContourError::TooFarFromOrigin { .. })));
     assert!(result.unwrap_err().to_string().contains("64-bit"));
     let wide = ContourSettings { precision: Precision::F64, ..ContourSettings::default() };
-    assert!(contour(&far, &crossings, Lattice { voxel: 0.1 }, &wide, &run).is_ok());
+    assert!(contour(&far, &crossings, Lattice { voxel: 0.1 }, None, &wide, &run).is_ok());
 }

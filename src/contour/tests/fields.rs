@@ -74,7 +74,7 @@ pub fn sample(surface: &impl Implicit, n: i32, voxel: f64) -> (SignField, Crossi
             if (value(node, axis, t).0 < 0.0) == low_inside { a = t } else { b = t }
         }
         let t = 0.5 * (a + b);
-        Crossing { t, normal: value(node, axis, t).1.map(|x| x as f32) }
+        Crossing { t, normal: value(node, axis, t).1.map(|x| x as f32), hint: 0 }
     });
     (field, crossings)
 }
@@ -88,7 +88,7 @@ pub fn cut_by(
 ) -> (TriMesh, ContourStatistics) {
     let run = RunSettings::with_threads(2).unwrap();
     let settings = ContourSettings { precision, cut: method };
-    contour(signs, crossings, Lattice { voxel }, &settings, &run).unwrap()
+    contour(signs, crossings, Lattice { voxel }, None, &settings, &run).unwrap()
 }
 
 /// Contours with a number of threads.
@@ -103,6 +103,7 @@ pub fn run(
         signs,
         crossings,
         Lattice { voxel },
+        None,
         &ContourSettings { precision, ..ContourSettings::default() },
         &run,
     )

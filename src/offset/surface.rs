@@ -1,0 +1,33 @@
+//! The offset surface as the contour asks for it.
+
+use crate::contour::{Creases, Surface};
+use crate::distance::SignedDistance;
+use glam::DVec3;
+
+/// All points at signed distance `r` from a mesh.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OffsetSurface<'a> {
+    pub distance: &'a SignedDistance<'a>,
+    /// Signed distance in model units.
+    pub r: f64,
+    /// Distances from the mesh up to this, in model units, give no direction.
+    pub vanishing: f64,
+}
+
+impl Surface for OffsetSurface<'_> {
+    fn creases(&self) -> Creases {
+        // Growing takes the union of what grows around each part, shrinking the intersection.
+        match self.r {
+            r if r > 0.0 => Creases::Concave,
+            r if r < 0.0 => Creases::Convex,
+            _ => Creases::Both,
+        }
+    }
+
+    fn at(&self, p: [f64; 3], hint: &mut u32) -> (f64, [f64; 3]) {
+        let p = DVec3::from(p);
+        let sample = self.distance.at(p, *hint);
+        *hint = sample.triangle;
+        (sample.distance - self.r, self.distance.gradient(p, &sample, self.vanishing).to_array())
+    }
+}
