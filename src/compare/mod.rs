@@ -180,7 +180,8 @@ pub fn compare(
     comparison.results = methods.into_iter().map(MethodResult::new).collect();
 
     for number in 1..=settings.runs {
-        let again = |r: &MethodResult| r.runs.first().is_none_or(|m| m.engine <= settings.once_above.as_secs_f64());
+        let again =
+            |r: &MethodResult| r.runs.first().is_none_or(|m| m.engine <= settings.once_above.as_secs_f64());
         for result in comparison.results.iter_mut().filter(|r| r.lost.is_none() && again(r)) {
             let method = result.method;
             watch(Event::Begin(number, method));
