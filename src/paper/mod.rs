@@ -14,7 +14,6 @@
 //! Most of the paper's models are not public. `models` says which model stands for which; a reader of a table
 //! must hold figures against each other in kind, not in digits.
 
-mod error_samples;
 mod lab;
 mod models;
 mod report;
@@ -28,7 +27,6 @@ mod table7;
 #[cfg(test)]
 mod tests;
 
-pub use error_samples::{Errors, errors};
 pub use report::{Cell, Report};
 
 use crate::error::Error;

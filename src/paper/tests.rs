@@ -76,3 +76,19 @@ fn errors_are_small_and_relative() {
     }
     assert!(measured >= 8, "{measured}");
 }
+
+#[test]
+fn errors_leave_out_no_vertex_and_no_edge() {
+    // Large enough that with the usual number of samples verify would leave some out.
+    let settings = PaperSettings::default();
+    let run = RunSettings::with_threads(2).unwrap();
+    let lab = Lab { settings: &settings, run: &run };
+    let model = lab.model(models::PaperModel::OctaFlower).unwrap();
+    let result = lab.offset(&model, 0.1, lab.fitted_grid()).unwrap().unwrap();
+    let found = table7::errors(&lab, &model, &result).unwrap();
+    let mesh = &result.mesh;
+    assert!(3 * mesh.triangles.len() / 2 > 4 * crate::verify::DEFAULT_SAMPLES, "{}", mesh.triangles.len());
+    assert_eq!(found.surface.samples, mesh.triangles.len());
+    assert_eq!(found.vertices.samples, mesh.vertices.len());
+    assert_eq!(found.edge_midpoints.samples, 3 * mesh.triangles.len() / 2);
+}
