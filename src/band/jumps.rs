@@ -1,5 +1,5 @@
 //! Leaves where the sign of the distance jumps far from the surface, which happens when the input is not
-//! closed: there the offset solid is closed along the jump.
+//! closed, or is and intersects itself: there the offset solid is closed along the jump.
 
 use super::LeafBatch;
 use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE};

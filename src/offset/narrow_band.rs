@@ -25,18 +25,15 @@ pub(crate) fn build(
         Ok(surface.fill_inside(&origins, &sides)?)
     };
     let mut inside_blocks = Vec::new();
-    let open = !distance.topology().defects().is_closed();
     let statistics = band::build(distance, settings, run, |batch| {
-        if open {
-            inside_blocks.extend_from_slice(&batch.inside_blocks);
-        }
+        inside_blocks.extend_from_slice(&batch.inside_blocks);
         insert(&batch)
     })?;
-    if open {
-        let leaves = surface.leaf_origins();
-        let jumps = band::leaves_at_jumps(&leaves, &inside_blocks, settings.background(), |nodes| {
-            surface.inside_at(nodes)
-        });
+    let leaves = surface.leaf_origins();
+    let jumps = band::leaves_at_jumps(&leaves, &inside_blocks, settings.background(), |nodes| {
+        surface.inside_at(nodes)
+    });
+    if !jumps.origins.is_empty() {
         surface.insert_leaves(&jumps.origins, &jumps.values, &jumps.active)?;
         closest.insert_leaves(&jumps.origins, &jumps.closest, &jumps.active)?;
     }

@@ -225,6 +225,20 @@ fn an_open_mesh_goes_ahead_by_pseudonormals_and_is_closed_at_jumps() {
 }
 
 #[test]
+fn a_closed_mesh_that_intersects_itself_is_closed_at_jumps() {
+    // Two cubes in one mesh: inside one of them, beside the other's faces, pseudonormals say outside, and half-way
+    // to the first one's faces the sign jumps, far from the surface.
+    let mut mesh = shapes::cube(1);
+    let other = shapes::cube(1);
+    let first = mesh.vertices.len() as u32;
+    mesh.vertices.extend(other.vertices.iter().map(|v| [v[0] + 0.9, v[1] + 0.3, v[2] + 0.2]));
+    mesh.triangles.extend(other.triangles.iter().map(|t| t.map(|v| v + first)));
+    let result = offset(&mesh, &settings(0.03, 0.02), &run(2)).unwrap();
+    assert!(result.statistics.edges.sign_jumps > 0);
+    assert!(audit(&result.mesh).is_sound());
+}
+
+#[test]
 fn shrinking_beyond_everything_names_the_depth() {
     let error = offset(&shapes::cube(1), &settings(-1.5, 0.1), &run(1)).unwrap_err();
     let Error::Empty(EmptyResult::TooDeep { depth, .. }) = error else { panic!("{error}") };
