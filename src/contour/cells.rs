@@ -3,12 +3,12 @@
 use super::ContourStatistics;
 use super::cell::Edge;
 use super::feature::Normals;
-use super::features::{FeatureVertex, Features};
+use super::features::{Bend, FeatureVertex, Features};
 use super::grid::Grid;
 use super::numbering::{CellId, CellNumbers, CornerSigns, constant_case, locate};
 use super::recover::Wish;
 use super::sheets::{Case, CaseId, CaseTable};
-use super::surface::{Creases, Surface};
+use super::surface::Surface;
 use super::vertex::{self, Placement};
 use crate::band::{Ijk, LeafId, SignField};
 use crate::edge::{Crossings, bits};
@@ -64,8 +64,8 @@ impl<'a> Cells<'a> {
         surface: Option<&'a dyn Surface>,
         phase: &PhaseGuard<'_>,
     ) -> Result<(Cells<'a>, Placements), Cancelled> {
-        let creases = surface.map_or(Creases::Both, |s| s.creases());
-        let features = Features::new(Vec::new(), 0, creases);
+        let bend = surface.map_or(Bend::UNKNOWN, Bend::of);
+        let features = Features::new(Vec::new(), 0, bend);
         let mut cells = Cells { signs, crossings, grid, numbers, surface, features, cases: Vec::new() };
         let mut cases = vec![CellCase::default(); numbers.len()];
         let mut vertices = vec![[0.0; 3]; numbers.vertices() as usize];
@@ -91,7 +91,7 @@ impl<'a> Cells<'a> {
             features.extend(found);
             statistics += counts;
         }
-        cells.features = Features::new(features, vertices.len(), creases);
+        cells.features = Features::new(features, vertices.len(), bend);
         Ok((cells, Placements { vertices, wishes, statistics }))
     }
 

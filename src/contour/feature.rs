@@ -36,13 +36,13 @@ const STEPS: usize = 12;
 
 /// A place that moved by less than this in a round, in voxels, stays. The steps shrink quadratically, so what
 /// is left is far less.
-const STAYS: f64 = 2e-3;
+const STAYS: f64 = 5e-3;
 
 /// Planes meet nowhere when the square of the sine between them is below this: 2 degrees.
 const PARALLEL: f64 = 1e-3;
 
 /// A place is on the surface when its distance is below this, in voxels.
-const ON_SURFACE: f64 = 1e-4;
+const ON_SURFACE: f64 = 1e-3;
 
 /// A plane near a feature.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 
 use super::feature::{Feature, MAX_PLANES};
 use super::qef::dot;
-use super::surface::Creases;
+use super::surface::{Creases, Surface};
 
 type Point = [f64; 3];
 
@@ -24,15 +24,14 @@ pub struct Features {
     bits: Vec<u64>,
     /// The features before each word of `bits`.
     before: Vec<u32>,
-    creases: Creases,
+    bend: Bend,
 }
 
 impl Features {
-    /// From a list by ascending number, of a mesh with `vertices` vertices
-    /// and creases of a kind.
-    pub fn new(all: Vec<FeatureVertex>, vertices: usize, creases: Creases) -> Features {
+    /// From a list by ascending number, of a mesh with `vertices` vertices.
+    pub fn new(all: Vec<FeatureVertex>, vertices: usize, bend: Bend) -> Features {
         if all.is_empty() {
-            return Features { all, bits: Vec::new(), before: Vec::new(), creases };
+            return Features { all, bits: Vec::new(), before: Vec::new(), bend };
         }
         let mut bits = vec![0u64; vertices.div_ceil(64)];
         for feature in &all {
@@ -44,7 +43,7 @@ impl Features {
             before.push(next);
             next += word.count_ones();
         }
-        Features { all, bits, before, creases }
+        Features { all, bits, before, bend }
     }
 
     /// The feature that a vertex stands for.
@@ -63,7 +62,7 @@ impl Features {
     /// The sides of the features among the vertices of a polygon.
     #[inline]
     pub fn sides(&self, vertices: impl Iterator<Item = u32>) -> Sides {
-        let mut sides = Sides { creases: self.creases, ..Sides::NONE };
+        let mut sides = Sides { bend: self.bend, ..Sides::NONE };
         if self.all.is_empty() {
             return sides;
         }
@@ -80,21 +79,37 @@ impl Features {
     }
 }
 
+/// How the surface bends.
+#[derive(Clone, Copy, Debug)]
+pub struct Bend {
+    creases: Creases,
+    curvature: f64,
+}
+
+impl Bend {
+    /// How nothing is known of the surface.
+    pub const UNKNOWN: Bend = Bend { creases: Creases::Both, curvature: 0.0 };
+
+    /// How a surface bends.
+    pub fn of(surface: &dyn Surface) -> Bend {
+        Bend { creases: surface.creases(), curvature: surface.curvature() }
+    }
+}
+
 /// The sides of four features.
 const MAX_SIDES: usize = 4 * MAX_PLANES;
 
-/// Planes whose lowest or highest envelope is the surface near a polygon.
+/// Planes whose lowest or highest envelope is the surface near a polygon, but for their bend.
 #[derive(Clone, Copy, Debug)]
 pub struct Sides {
     planes: [(Point, Point); MAX_SIDES],
     len: usize,
-    creases: Creases,
+    bend: Bend,
 }
 
 impl Sides {
     /// No sides.
-    pub const NONE: Sides =
-        Sides { planes: [([0.0; 3], [0.0; 3]); MAX_SIDES], len: 0, creases: Creases::Both };
+    pub const NONE: Sides = Sides { planes: [([0.0; 3], [0.0; 3]); MAX_SIDES], len: 0, bend: Bend::UNKNOWN };
 
     /// Whether there are none.
     #[inline]
@@ -102,19 +117,30 @@ impl Sides {
         self.len == 0
     }
 
-    /// The distance of `p` from the envelope, in model units: off by about the square of its distance from the
-    /// features over twice the radius of curvature.
+    /// The least distance that `p` can have from the surface, in model units, however much the sides are bent.
     pub fn distance(&self, p: Point) -> f64 {
-        let heights = self.planes[..self.len].iter().map(|(at, normal)| {
+        let Bend { creases, curvature } = self.bend;
+        // Of the lower and of the upper ends of what the sides' distances can be.
+        let (mut least, mut largest) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for (at, normal) in &self.planes[..self.len] {
             let offset = std::array::from_fn(|i| p[i] - at[i]);
-            dot(*normal, offset)
-        });
-        let (least, largest) =
-            heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
-        match self.creases {
-            Creases::Concave => least.abs(),
-            Creases::Convex => largest.abs(),
-            Creases::Both => least.abs().min(largest.abs()),
+            let height = dot(*normal, offset);
+            let sag = 0.5 * curvature * dot(offset, offset);
+            let ends = match creases {
+                Creases::Concave => [height, height + sag],
+                Creases::Convex => [height - sag, height],
+                Creases::Both => [height; 2],
+            };
+            for i in 0..2 {
+                least[i] = least[i].min(ends[i]);
+                largest[i] = largest[i].max(ends[i]);
+            }
+        }
+        let from_zero = |[low, high]: [f64; 2]| low.max(-high).max(0.0);
+        match creases {
+            Creases::Concave => from_zero(least),
+            Creases::Convex => from_zero(largest),
+            Creases::Both => from_zero(least).min(from_zero(largest)),
         }
     }
 }

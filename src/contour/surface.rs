@@ -15,6 +15,8 @@ pub enum Creases {
 pub trait Surface: Sync {
     /// Which creases it has.
     fn creases(&self) -> Creases;
+    /// The largest curvature of its sides, one over model units: away from concave creases, towards convex ones.
+    fn curvature(&self) -> f64;
     /// The signed distance of `p`, negative inside, in model units, and its unit gradient there. `hint` is
     /// carried from one question to the next near it, for speed only; [`Crossing::hint`](crate::edge::Crossing)
     /// to begin with.

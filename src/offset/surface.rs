@@ -24,6 +24,11 @@ impl Surface for OffsetSurface<'_> {
         }
     }
 
+    fn curvature(&self) -> f64 {
+        // Cylinders around edges and spheres around vertices; a triangle mesh itself is flat.
+        if self.r == 0.0 { 0.0 } else { 1.0 / self.r.abs() }
+    }
+
     fn at(&self, p: [f64; 3], hint: &mut u32) -> (f64, [f64; 3]) {
         let p = DVec3::from(p);
         let sample = self.distance.at(p, *hint);
