@@ -12,7 +12,6 @@
 
 use super::qef::{Qef, dot};
 use super::surface::Surface;
-use crate::edge::Crossing;
 
 type Point = [f64; 3];
 
@@ -146,20 +145,37 @@ pub struct Feature {
 pub type Normals = [[f32; 3]; MAX_PLANES];
 
 /// The samples of a sheet: points in the cell's coordinates, and unit normals.
-pub type Samples = ([(Point, Point); 12], usize);
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Samples {
+    all: [(Point, Point); 12],
+    len: usize,
+}
 
-/// The samples of crossings at `points`.
-pub fn samples<'a>(crossings: impl Iterator<Item = (Point, &'a Crossing)>) -> Samples {
-    let (mut all, mut len) = ([([0.0; 3], [0.0; 3]); 12], 0);
-    for (point, crossing) in crossings {
-        let normal = crossing.normal.map(f64::from);
+impl Samples {
+    /// Adds a sample, at most twelve, if its normal is one.
+    #[inline]
+    pub fn push(&mut self, point: Point, normal: Point) {
         // What is not a number has no length of one.
         if (dot(normal, normal) - 1.0).abs() < 1e-3 {
-            all[len] = (point, normal);
-            len += 1;
+            self.all[self.len] = (point, normal);
+            self.len += 1;
         }
     }
-    (all, len)
+
+    fn slice(&self) -> &[(Point, Point)] {
+        &self.all[..self.len]
+    }
+
+    /// Whether they see more than one side of a crease.
+    pub fn see_several_sides(&self) -> bool {
+        sides(self.slice(), [0.0; 3]).len >= 2
+    }
+
+    /// How far the farthest of their planes is from `point`.
+    pub fn disagreement(&self, point: Point) -> f64 {
+        let planes = self.slice().iter();
+        planes.map(|(at, normal)| dot(*normal, along(point, -1.0, *at)).abs()).fold(0.0, f64::max)
+    }
 }
 
 /// The sides of a crease or corner that the samples see: one sample for each, the one nearest to `near`. Fewer
@@ -193,17 +209,6 @@ fn sides(samples: &[(Point, Point)], near: Point) -> Planes {
     sides
 }
 
-/// Whether the samples see more than one side of a crease.
-pub fn sees_several_sides(samples: &Samples) -> bool {
-    sides(&samples.0[..samples.1], [0.0; 3]).len >= 2
-}
-
-/// How far the farthest of the samples' planes is from `point`.
-pub fn disagreement(samples: &Samples, point: Point) -> f64 {
-    let planes = samples.0[..samples.1].iter();
-    planes.map(|(at, normal)| dot(*normal, along(point, -1.0, *at)).abs()).fold(0.0, f64::max)
-}
-
 /// Sheets whose normals differ by less, as the second eigenvalue of their error function over the largest, are
 /// not looked at: five crossings on one side and one on another at 18 degrees to it have 0.013.
 pub const SPREAD: f64 = 0.002;
@@ -211,8 +216,7 @@ pub const SPREAD: f64 = 0.002;
 /// The feature that a sheet with the given samples sees, if it sees one and the surface has it within reach of the
 /// cell. `minimiser` is the least point of the error function, `mean` the mean of the sample points.
 pub fn feature(ask: &mut Asker<'_>, samples: &Samples, minimiser: Point, mean: Point) -> Option<Feature> {
-    let samples = &samples.0[..samples.1];
-    let seen = sides(samples, minimiser);
+    let seen = sides(samples.slice(), minimiser);
     if seen.len < 2 {
         return None;
     }
@@ -222,13 +226,12 @@ pub fn feature(ask: &mut Asker<'_>, samples: &Samples, minimiser: Point, mean: P
 
 /// The feature between the sides of the surface that are near the points `at`, around the origin.
 pub fn feature_between(ask: &mut Asker<'_>, at: impl Iterator<Item = Point>) -> Option<Point> {
-    let (mut all, mut len) = ([([0.0; 3], [0.0; 3]); 12], 0);
+    let mut samples = Samples::default();
     for p in at.take(12) {
-        let plane = ask.plane(p);
-        all[len] = (plane.anchor, plane.normal);
-        len += 1;
+        let Plane { anchor, normal } = ask.plane(p);
+        samples.push(anchor, normal);
     }
-    let seen = sides(&all[..len], [0.0; 3]);
+    let seen = sides(samples.slice(), [0.0; 3]);
     if seen.len < 2 {
         return None;
     }

@@ -2,9 +2,7 @@
 //! walls allow.
 
 use super::cell::{Edge, EdgeSet};
-use super::feature::{
-    Asker, Feature, Normals, SPREAD, disagreement, feature, nearest, samples, sees_several_sides,
-};
+use super::feature::{Asker, Feature, Normals, SPREAD, Samples, feature, nearest};
 use super::grid::Grid;
 use super::qef::{Minimiser, Qef};
 use super::region::Region;
@@ -63,25 +61,27 @@ pub fn place<'a>(
 ) -> Placed {
     let edges = case.sheets()[sheet].edges;
     let mut qef = Qef::default();
+    let mut samples = Samples::default();
+    let mut hint = 0;
     for edge in edges.iter() {
         let sample = crossing(edge);
-        qef.add(on_edge(edge, unit(sample.t)), sample.normal.map(f64::from));
+        let (point, normal) = (on_edge(edge, unit(sample.t)), sample.normal.map(f64::from));
+        qef.add(point, normal);
+        samples.push(point, normal);
+        hint = sample.hint;
     }
     let mut minimiser = qef.minimiser();
     let mut found = None;
     if let Some(surface) = surface {
-        let points = edges.iter().map(|edge| (on_edge(edge, unit(crossing(edge).t)), crossing(edge)));
-        let samples = samples(points);
         let is_feature = minimiser.spread() > SPREAD;
-        let is_unsure = disagreement(&samples, minimiser.point) > UNSURE;
+        let is_unsure = samples.disagreement(minimiser.point) > UNSURE;
         if is_feature || is_unsure {
-            let hint = edges.iter().next().map_or(0, |edge| crossing(edge).hint);
             let origin = grid.ideal(cell, [0.0; 3]);
             let mut ask = Asker { surface, origin, voxel: grid.voxel(), hint, count: 0 };
             if is_feature {
                 found = feature(&mut ask, &samples, minimiser.point, qef.mean());
             }
-            if found.is_none() && (is_unsure || sees_several_sides(&samples)) {
+            if found.is_none() && (is_unsure || samples.see_several_sides()) {
                 // Not where the planes meet, but at least on the surface.
                 let (position, _) = in_cell(grid, cell, case, sheet, &crossing, &minimiser);
                 let point = nearest(&mut ask, grid.local(cell, position));
