@@ -1,9 +1,9 @@
 //! The arguments, their units and their help.
 
-use super::numbers::{bytes, length, resolution, voxel};
+use super::numbers::{bytes, length, resolution, tolerance, voxel};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use exocarp::compare::Method;
-use exocarp::offset::{Length, SignMode};
+use exocarp::offset::{Length, SignMode, Tolerance};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -24,6 +24,7 @@ Examples:
   exocarp offset part.stl -d -2% -o shrunk.ply             2% of the diagonal inward
   exocarp offset part.stl -d 0 --voxel 0.1 -o remesh.obj   a sharp, clean remesh
   exocarp offset part.stl -d 1% -o a.ply --vdb a.vdb --stats a.json
+  exocarp offset part.stl -d 1% --tolerance 0.02h -o a.ply     within 0.02 voxels of the true offset
   exocarp offset scan.ply -d 1% --sign pseudonormal -o a.ply   an input with holes
 
 Lengths are in model units (those of the input file); percentages are of the diagonal of the input's
@@ -150,6 +151,9 @@ pub(super) struct OffsetArguments {
     /// Where inside and outside come from
     #[arg(long, value_enum, default_value_t = Sign::Closed)]
     pub sign: Sign,
+    /// Refine the mesh until it is this near to the true offset surface: in model units, or in voxels as 0.05h
+    #[arg(long, value_name = "E", value_parser = tolerance, allow_negative_numbers = true)]
+    pub tolerance: Option<Tolerance>,
     /// Write PLY with 64-bit coordinates
     #[arg(long)]
     pub f64: bool,

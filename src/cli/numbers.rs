@@ -1,6 +1,6 @@
 //! Numbers as users write them, and as users read them.
 
-use exocarp::offset::Length;
+use exocarp::offset::{Length, Tolerance};
 
 /// A distance in model units, or with `%` of the diagonal.
 pub(super) fn length(text: &str) -> Result<Length, String> {
@@ -15,6 +15,18 @@ pub(super) fn voxel(text: &str) -> Result<f64, String> {
     match finite(text)? {
         h if h > 0.0 => Ok(h),
         _ => Err("a voxel size is positive".into()),
+    }
+}
+
+/// A tolerance in model units, or in voxels with an `h` at its end.
+pub(super) fn tolerance(text: &str) -> Result<Tolerance, String> {
+    let (number, unit): (_, fn(f64) -> Tolerance) = match text.strip_suffix('h') {
+        Some(voxels) => (voxels, Tolerance::Voxels),
+        None => (text, Tolerance::Units),
+    };
+    match finite(number)? {
+        t if t > 0.0 => Ok(unit(t)),
+        _ => Err("a tolerance is positive".into()),
     }
 }
 
@@ -115,6 +127,15 @@ mod tests {
             assert!(voxel(wrong).is_err(), "{wrong}");
         }
         assert!(resolution("0").is_err() && resolution("-3").is_err() && resolution("1.5").is_err());
+    }
+
+    #[test]
+    fn tolerances_are_units_or_voxels() {
+        assert_eq!(tolerance("0.25"), Ok(Tolerance::Units(0.25)));
+        assert_eq!(tolerance("0.05h"), Ok(Tolerance::Voxels(0.05)));
+        for wrong in ["0", "-1h", "h", "1%", "nan", ""] {
+            assert!(tolerance(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

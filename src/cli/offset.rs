@@ -34,6 +34,13 @@ pub(super) fn run(arguments: &OffsetArguments, session: &Session) -> Result<(), 
         session.warn(&format!("the sign jumps along {jumps}; the surface is closed there"));
     }
 
+    if let Some(beyond) = result.statistics.contour.beyond_tolerance
+        && beyond > 0
+    {
+        let triangles = counted(beyond as usize, "triangle", "triangles");
+        session.warn(&format!("{triangles} could not be brought within the tolerance"));
+    }
+
     let (_, write) = session.phase(Phase::Write, || {
         save_mesh(&result.mesh, &arguments.output, coordinates(arguments.f64), session)?;
         match &arguments.vdb {
@@ -61,6 +68,7 @@ fn settings(arguments: &OffsetArguments, session: &Session) -> Result<OffsetSett
         sign: arguments.sign.mode(),
         half_width: if arguments.vdb.is_some() { STORED_HALF_WIDTH } else { 1.0 },
         precision: precision(&arguments.output, arguments.f64)?,
+        tolerance: arguments.tolerance,
         max_memory: session.max_memory,
     };
     settings.validate().map_err(exocarp::error::Error::from)?;

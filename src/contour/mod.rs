@@ -32,8 +32,9 @@
 mod cell;
 mod cells;
 mod cut_times;
-mod envelope;
 mod face_vertex;
+mod editor;
+mod envelope;
 mod feature;
 mod features;
 mod grid;
@@ -44,7 +45,9 @@ mod polygon_edges;
 mod polygonize;
 mod qef;
 mod recover;
+mod refine;
 mod region;
+mod rounds;
 mod sheets;
 mod statistics;
 mod surface;
@@ -67,12 +70,14 @@ use output::Triangulation;
 use recover::Wish;
 
 /// Settings of [`contour`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContourSettings {
     /// The coordinates of the result.
     pub precision: Precision,
     /// How the triangles around an edge are chosen.
     pub cut: CutMethod,
+    /// Refine the mesh until it is within this many voxels of the surface; `None` leaves it as the lattice gives it.
+    pub tolerance: Option<f64>,
 }
 
 /// Why [`contour`] failed.
@@ -134,7 +139,7 @@ pub fn contour(
         let mut faces = face_vertex::face_vertices(&cells, &vertices, run)?;
         vertices.append(&mut faces.positions);
         statistics.face_vertices = vertices.len() as u64 - u64::from(numbers.vertices());
-        let Triangulation { mut mesh, ranges, far, statistics: polygons } =
+        let Triangulation { mut mesh, far, statistics: polygons } =
             output::triangulate(&cells, &faces, vertices, settings.cut, &phase)?;
         statistics += polygons;
         if let Some(surface) = surface {
@@ -144,12 +149,19 @@ pub fn contour(
                 wishes.sort_by_key(|wish| (wish.vertex, wish.place.is_none()));
                 wishes.dedup_by_key(|wish| wish.vertex);
             }
-            let recovered = recover::recover(&cells, surface, &wishes, &ranges, &mut mesh, run)?;
-            statistics.recovered = recovered.granted;
+            let recovered = recover::recover(&cells, surface, &wishes, &mut mesh, run)?;
+            statistics.recovered = recovered.moved;
             statistics.refused = recovered.refused;
             statistics.flipped = recovered.flipped;
             statistics.refined = recovered.split;
+            if let Some(tolerance) = settings.tolerance {
+                let refined = refine::refine(&cells, surface, tolerance, &mut mesh, run)?;
+                statistics.recovered += refined.moved;
+                statistics.refined += refined.split;
+                statistics.beyond_tolerance = Some(refined.beyond);
+            }
         }
+        let mesh = mesh.mesh;
         statistics.vertices = mesh.vertices.len() as u64;
         statistics.triangles = mesh.triangles.len() as u64;
         Ok((mesh, statistics))

@@ -6,6 +6,7 @@ use super::envelope::Envelope;
 use super::face_vertex::FaceVertices;
 use super::feature::Asker;
 use super::polygonize::{Cut, CutMethod, EDGE_VERTEX, Fit, Polygon, PolygonCorner, polygonize};
+use super::rounds::LeafMesh;
 use super::{ContourError, ContourStatistics, TooManyVertices};
 use crate::band::{Axis, Ijk, LeafId};
 use crate::edge::EdgeId;
@@ -29,9 +30,7 @@ struct LeafOutput {
 #[derive(Debug)]
 pub struct Triangulation {
     /// The mesh.
-    pub mesh: TriMesh,
-    /// The number of the first triangle of each leaf, and the number of all at the end.
-    pub ranges: Vec<usize>,
+    pub mesh: LeafMesh,
     /// By leaf the feature vertices of polygons that are far from the surface.
     pub far: Vec<Vec<u32>>,
     /// Counts.
@@ -92,7 +91,9 @@ pub fn triangulate(
         split: hubs as u64,
         ..ContourStatistics::default()
     };
-    Ok(Triangulation { mesh: TriMesh { vertices, triangles }, ranges, far, statistics })
+    let added = vec![Vec::new(); leaves.len()];
+    let mesh = LeafMesh { mesh: TriMesh { vertices, triangles }, ranges, added };
+    Ok(Triangulation { mesh, far, statistics })
 }
 
 fn in_leaf(

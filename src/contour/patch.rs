@@ -307,6 +307,12 @@ impl Patch {
         &self.triangles[n]
     }
 
+    /// The numbers in the patch of the triangles with the given numbers of the mesh, which ascend.
+    pub fn numbered(&self, numbers: &[usize]) -> Vec<usize> {
+        let is_one = |n: &usize| numbers.binary_search(&self.triangles[*n].number).is_ok();
+        (0..self.triangles.len()).filter(is_one).collect()
+    }
+
     /// The numbers in the patch of the triangles at a vertex.
     pub fn star(&self, vertex: u32) -> Vec<usize> {
         // Compared without short cuts, for speed.

@@ -28,6 +28,8 @@ pub struct ContourStatistics {
     pub flipped: u64,
     /// Vertices added where the surface was too far away.
     pub refined: u64,
+    /// Triangles that are farther from the surface than the tolerance all the same; `None` without a tolerance.
+    pub beyond_tolerance: Option<u64>,
     /// Vertices of the result.
     pub vertices: u64,
     /// Triangles of the result.
@@ -47,6 +49,10 @@ impl AddAssign for ContourStatistics {
         self.refused += other.refused;
         self.flipped += other.flipped;
         self.refined += other.refined;
+        self.beyond_tolerance = match (self.beyond_tolerance, other.beyond_tolerance) {
+            (Some(a), Some(b)) => Some(a + b),
+            (a, b) => a.or(b),
+        };
         self.vertices += other.vertices;
         self.triangles += other.triangles;
     }

@@ -17,7 +17,7 @@ mod tests;
 mod unsuitable;
 
 pub use crate::contour::Precision;
-pub use settings::{Length, OffsetSettings, SettingsError, SignMode, VoxelSize};
+pub use settings::{Length, OffsetSettings, SettingsError, SignMode, Tolerance, VoxelSize};
 pub use statistics::{EngineTimes, OffsetStatistics, VdbStatistics};
 pub use unsuitable::{EmptyResult, InputError, MemoryError};
 
@@ -84,7 +84,12 @@ pub fn offset(mesh: &TriMesh, settings: &OffsetSettings, run: &RunSettings) -> R
     times.edges = started.elapsed().as_secs_f64();
 
     let started = Instant::now();
-    let contour_settings = ContourSettings { precision: settings.precision, ..ContourSettings::default() };
+    let tolerance = settings.tolerance.map(|tolerance| match tolerance {
+        Tolerance::Units(t) => t / lattice.voxel,
+        Tolerance::Voxels(t) => t,
+    });
+    let contour_settings =
+        ContourSettings { precision: settings.precision, tolerance, ..ContourSettings::default() };
     let surface = OffsetSurface { distance: &distance, r, vanishing: 1e-4 * lattice.voxel };
     let (mesh, contour) = contour(&signs, &crossings, lattice, Some(&surface), &contour_settings, run)?;
     times.contour = started.elapsed().as_secs_f64();

@@ -25,6 +25,15 @@ pub enum VoxelSize {
     Resolution(u32),
 }
 
+/// How far the result may be from the true offset surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Tolerance {
+    /// In model units.
+    Units(f64),
+    /// In voxels.
+    Voxels(f64),
+}
+
 /// Where the sign of the distance comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SignMode {
@@ -50,6 +59,10 @@ pub struct OffsetSettings {
     pub half_width: f64,
     /// Coordinates of the result.
     pub precision: Precision,
+    /// Refine the result until it is this near to the true offset surface; `None` leaves it as the lattice
+    /// gives it. What could not be reached is counted in
+    /// [`ContourStatistics::beyond_tolerance`](crate::contour::ContourStatistics).
+    pub tolerance: Option<Tolerance>,
     /// Refuse to start when the work would need more than about this many bytes; `None` for the memory
     /// that the system has available.
     pub max_memory: Option<u64>,
@@ -63,6 +76,7 @@ impl Default for OffsetSettings {
             sign: SignMode::Closed,
             half_width: 1.0,
             precision: Precision::F32,
+            tolerance: None,
             max_memory: None,
         }
     }
@@ -80,6 +94,9 @@ pub enum SettingsError {
     /// The resolution is zero.
     #[error("the resolution must be at least 1")]
     Resolution,
+    /// The tolerance is zero, negative, infinite or not a number.
+    #[error("the tolerance must be a positive number, not {0}")]
+    Tolerance(f64),
     /// The half-width is out of range.
     #[error("the half-width must be 1 to 1000 voxels, not {0}")]
     HalfWidth(f64),
@@ -113,6 +130,11 @@ impl OffsetSettings {
             VoxelSize::Units(h) if !(h > 0.0 && h.is_finite()) => return Err(SettingsError::Voxel(h)),
             VoxelSize::Resolution(0) => return Err(SettingsError::Resolution),
             VoxelSize::Units(_) | VoxelSize::Resolution(_) => {}
+        }
+        if let Some(Tolerance::Units(t) | Tolerance::Voxels(t)) = self.tolerance
+            && !(t > 0.0 && t.is_finite())
+        {
+            return Err(SettingsError::Tolerance(t));
         }
         if !(1.0..=1000.0).contains(&self.half_width) {
             return Err(SettingsError::HalfWidth(self.half_width));

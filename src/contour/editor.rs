@@ -1,0 +1,178 @@
+//! Changes of a finished mesh that bring it nearer to the surface: which to try. Whether they are made decides the
+//! exact test of `patch`.
+
+use super::feature::{Asker, feature_between, nearest};
+use super::features::{Features, Sides};
+use super::grid::Grid;
+use super::patch::{Patch, PatchEdge};
+use super::qef::{cross, dot};
+use super::surface::Surface;
+
+type Point = [f64; 3];
+
+/// Edges whose triangles' normals differ by less than this (cosine of 5 degrees) are not worth flipping.
+const FLAT: f64 = 0.996;
+
+/// Edges whose middle is nearer to the surface than this, in voxels, stay.
+const GOOD_EDGE: f64 = 0.01;
+
+/// Points that are nearer than this, in voxels, to the sides that features nearby know are not asked about.
+const SURE: f64 = 0.03;
+
+/// A flip must bring the middle of the edge nearer by this factor.
+const GAIN: f64 = 0.5;
+
+/// A place is taken when a vertex is as near as this, in voxels.
+const TAKEN: f64 = 0.01;
+
+/// How often what was split is split again.
+const DEPTH: u32 = 3;
+
+/// A patch with the surface that it shall come near to.
+pub struct Editor<'a> {
+    /// The part of the mesh.
+    pub patch: Patch,
+    /// The surface.
+    pub surface: &'a dyn Surface,
+    /// The lattice, for its precision.
+    pub grid: &'a Grid,
+    /// The vertices on creases and corners.
+    pub features: &'a Features,
+    /// Triangles, edges and vertices that are farther from the surface, in voxels, are split and moved.
+    pub tolerance: f64,
+    /// Whether what the features nearby say is enough where they say that the surface is near.
+    pub trusting: bool,
+    /// See [`Surface::at`].
+    pub hint: u32,
+}
+
+impl Editor<'_> {
+    /// Where a vertex that is far from the surface would be on it.
+    pub fn place_on_surface(&mut self, vertex: u32) -> Option<Point> {
+        let origin = self.patch.position(vertex)?;
+        let mut ask = Asker { surface: self.surface, origin, voxel: self.voxel(), hint: self.hint, count: 0 };
+        let is_far = ask.at([0.0; 3]).0.abs() > self.tolerance;
+        let place = if is_far { nearest(&mut ask, [0.0; 3]) } else { None };
+        self.hint = ask.hint;
+        place.map(|p| self.grid.round(std::array::from_fn(|i| origin[i] + self.voxel() * p[i])))
+    }
+
+    /// Flips edges at and around a vertex that cut through the solid or the air beside a crease.
+    pub fn flip_around(&mut self, vertex: u32) -> u64 {
+        let mut flipped = 0;
+        // Every flip brings the surface nearer; the limit is for rounding.
+        while flipped < 8 {
+            let edges = self.patch.edges_around(vertex);
+            let Some(()) = edges.iter().find_map(|edge| self.flip(edge)) else { break };
+            flipped += 1;
+        }
+        flipped
+    }
+
+    fn flip(&mut self, edge: &PatchEdge) -> Option<()> {
+        let PatchEdge { a, b, c, d, .. } = *edge;
+        if is_flat(edge) {
+            return None;
+        }
+        let sides = self.features.sides([a, b, c, d].map(|v| v.0).into_iter());
+        let now = self.error(middle(a.1, b.1), &sides);
+        if now < GOOD_EDGE {
+            return None;
+        }
+        let then = self.error(middle(c.1, d.1), &Sides::NONE);
+        (then < GAIN * now && self.patch.try_flip(edge)).then_some(())
+    }
+
+    /// Splits the triangles at a vertex, and their edges, where they are far from the surface.
+    pub fn split_around(&mut self, vertex: u32, depth: u32) -> u64 {
+        let mut split = 0;
+        let mut open = self.patch.star(vertex);
+        while let Some(n) = open.pop() {
+            let Some(new) = self.split(n) else { continue };
+            split += 1;
+            self.flip_around(new);
+            if depth < DEPTH {
+                split += self.split_around(new, depth + 1);
+            }
+            open.retain(|&n| self.patch.triangle_at(n).vertices.contains(&vertex));
+        }
+        split
+    }
+
+    /// Where a triangle is farthest from the surface, if that is beyond the tolerance: the number of a side or 3 for
+    /// its centre, and the place.
+    pub fn worst(&mut self, n: usize) -> Option<(usize, Point)> {
+        let t = *self.patch.triangle_at(n);
+        let [a, b, c] = t.corners;
+        let centre = std::array::from_fn(|i| (a[i] + b[i] + c[i]) / 3.0);
+        let places = [middle(a, b), middle(b, c), middle(c, a), centre];
+        let sides = if self.trusting { self.features.sides(t.vertices.into_iter()) } else { Sides::NONE };
+        let errors = places.map(|p| self.error(p, &sides));
+        let worst = (0..4).max_by(|&i, &j| errors[i].total_cmp(&errors[j]))?;
+        (errors[worst] > self.tolerance).then_some((worst, places[worst]))
+    }
+
+    /// Splits a triangle, or an edge of it, where it is farthest from the surface.
+    pub fn split(&mut self, n: usize) -> Option<u32> {
+        let (worst, from) = self.worst(n)?;
+        let [a, b, c] = self.patch.triangle_at(n).corners;
+        let edge = if worst < 3 { self.patch.edge(n, worst) } else { None };
+        let around: Vec<Point> = match &edge {
+            Some(edge) => vec![edge.a.1, edge.b.1, edge.c.1, edge.d.1],
+            None => vec![a, b, c],
+        };
+        for target in self.surface_points(from, &around).into_iter().flatten() {
+            let target = self.grid.round(target);
+            if self.patch.is_taken(target, TAKEN * self.voxel(), u32::MAX) {
+                continue;
+            }
+            let new = match &edge {
+                Some(edge) => self.patch.try_split_edge(edge, target),
+                None => self.patch.try_split_face(n, target),
+            };
+            if new.is_some() {
+                return new;
+            }
+        }
+        None
+    }
+
+    /// Points of the surface near `from`: the crease or corner between the sides that are seen from there towards
+    /// the points around, and the next point at all.
+    fn surface_points(&mut self, from: Point, around: &[Point]) -> [Option<Point>; 2] {
+        let mut ask =
+            Asker { surface: self.surface, origin: from, voxel: self.voxel(), hint: self.hint, count: 0 };
+        let towards = around.iter().map(|p| std::array::from_fn(|i| 0.5 * (p[i] - from[i]) / self.voxel()));
+        let crease = feature_between(&mut ask, towards);
+        let next = nearest(&mut ask, [0.0; 3]);
+        self.hint = ask.hint;
+        let world = |p: Point| std::array::from_fn(|i| from[i] + self.voxel() * p[i]);
+        [crease.map(world), next.map(world)]
+    }
+
+    fn voxel(&self) -> f64 {
+        self.grid.voxel()
+    }
+
+    /// The distance of a point from the surface, in voxels, if that can be more than [`SURE`] by what the sides of
+    /// features near it say; else 0.
+    pub fn error(&mut self, p: Point, sides: &Sides) -> f64 {
+        if !sides.is_empty() && sides.distance(p) < SURE * self.voxel() {
+            return 0.0;
+        }
+        self.surface.at(p, &mut self.hint).0.abs() / self.voxel()
+    }
+}
+
+/// The middle between two points.
+pub fn middle(p: Point, q: Point) -> Point {
+    std::array::from_fn(|i| 0.5 * (p[i] + q[i]))
+}
+
+fn is_flat(edge: &PatchEdge) -> bool {
+    let PatchEdge { a, b, c, d, .. } = edge;
+    let minus = |p: Point, q: Point| -> Point { std::array::from_fn(|i| p[i] - q[i]) };
+    let along = minus(b.1, a.1);
+    let (n, m) = (cross(along, minus(c.1, a.1)), cross(minus(d.1, a.1), along));
+    dot(n, m) > FLAT * (dot(n, n) * dot(m, m)).sqrt()
+}

@@ -1,0 +1,107 @@
+//! The mesh refined until it is within a tolerance of the surface, where it is not.
+//!
+//! Triangles are looked at in the middle, in the middles of their sides and at their corners. What is too far there is
+//! split at the worst place, with a new vertex on the surface or on its crease, as often as it takes; each change is
+//! made only if the mesh stays embedded (see `patch`).
+
+use super::cells::Cells;
+use super::editor::Editor;
+use super::patch::Bounds;
+use super::rounds::LeafMesh;
+use super::surface::Surface;
+use crate::run::{Cancelled, RunSettings};
+
+/// Passes over the mesh. Each halves the edges that are too far, so that the error shrinks to a quarter.
+const PASSES: u32 = 6;
+
+/// Between the places that are looked at the error can be larger than there: they must meet this share of the
+/// tolerance.
+const SHARE: f64 = 0.8;
+
+/// What refining did.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Refined {
+    /// Vertices added.
+    pub split: u64,
+    /// Vertices moved onto the surface.
+    pub moved: u64,
+    /// Triangles that are still farther from the surface than the tolerance.
+    pub beyond: u64,
+}
+
+/// Refines the mesh until no triangle is farther from the surface than `tolerance`, in voxels, or nothing changes.
+///
+/// # Errors
+/// When the run is cancelled.
+pub fn refine(
+    cells: &Cells<'_>,
+    surface: &dyn Surface,
+    tolerance: f64,
+    mesh: &mut LeafMesh,
+    run: &RunSettings,
+) -> Result<Refined, Cancelled> {
+    let mut refined = Refined::default();
+    let (grid, features) = (&cells.grid, &cells.features);
+    let mut is_last = false;
+    for pass in 0..=PASSES {
+        // The last pass only looks.
+        is_last |= pass == PASSES;
+        let tolerance = if is_last { tolerance } else { SHARE * tolerance };
+        let numbers: Vec<Vec<usize>> =
+            cells.signs.leaves().map(|leaf| mesh.triangles(leaf).collect()).collect();
+        let mut done = Refined::default();
+        mesh.in_rounds(
+            cells,
+            run,
+            |mesh, leaf| {
+                let numbers = &numbers[leaf.0 as usize];
+                (!numbers.is_empty()).then(|| Bounds::around(numbers.iter().flat_map(|&t| mesh.corners(t))))
+            },
+            |leaf, patch| {
+                let mut editor =
+                    Editor { patch, surface, grid, features, tolerance, trusting: false, hint: 0 };
+                let done = editor.refine(&numbers[leaf.0 as usize], is_last);
+                (editor.patch, done)
+            },
+            |of_leaf: Refined| {
+                done.split += of_leaf.split;
+                done.moved += of_leaf.moved;
+                done.beyond += of_leaf.beyond;
+            },
+        )?;
+        refined = Refined { split: refined.split + done.split, moved: refined.moved + done.moved, ..done };
+        if is_last {
+            break;
+        }
+        is_last = done.split + done.moved == 0;
+    }
+    Ok(refined)
+}
+
+impl Editor<'_> {
+    /// Splits the triangles with the given numbers of the mesh once, where they are too far from the surface, and
+    /// moves their corners there; or only counts them.
+    fn refine(&mut self, numbers: &[usize], only_count: bool) -> Refined {
+        let mut refined = Refined::default();
+        let own = self.patch.numbered(numbers);
+        if only_count {
+            refined.beyond = own.iter().filter(|&&n| self.worst(n).is_some()).count() as u64;
+            return refined;
+        }
+        let mut corners: Vec<u32> = own.iter().flat_map(|&n| self.patch.triangle_at(n).vertices).collect();
+        corners.sort_unstable();
+        corners.dedup();
+        for vertex in corners {
+            if let Some(place) = self.place_on_surface(vertex) {
+                refined.moved += u64::from(self.patch.try_move(vertex, place));
+            }
+        }
+        for n in own {
+            if let Some(new) = self.split(n) {
+                refined.split += 1;
+                self.flip_around(new);
+            }
+        }
+        refined
+    }
+}
