@@ -17,7 +17,7 @@ const FLAT: f64 = 0.996;
 const GOOD_EDGE: f64 = 0.01;
 
 /// Points that are nearer than this, in voxels, to the sides that features nearby know are not asked about.
-const SURE: f64 = 0.03;
+const SURE: f64 = 0.02;
 
 /// A flip must bring the middle of the edge nearer by this factor.
 const GAIN: f64 = 0.5;
@@ -164,8 +164,7 @@ impl Editor<'_> {
     }
 }
 
-/// The middle between two points.
-pub fn middle(p: Point, q: Point) -> Point {
+fn middle(p: Point, q: Point) -> Point {
     std::array::from_fn(|i| 0.5 * (p[i] + q[i]))
 }
 

@@ -171,6 +171,21 @@ impl Samples {
         sides(self.slice(), [0.0; 3]).len >= 2
     }
 
+    /// How high `point` is above a smooth surface through the samples, and the surface's normal there. By the
+    /// trapezoidal rule along the ways from the samples, with the mean normal at the end: exact for quadratic
+    /// functions, where the tangent planes themselves are off by their curvature.
+    pub fn height(&self, point: Point) -> (f64, Point) {
+        let sum = self.slice().iter().fold([0.0; 3], |sum, (_, normal)| along(sum, 1.0, *normal));
+        let length = dot(sum, sum).sqrt();
+        if length < f64::MIN_POSITIVE {
+            return (0.0, sum);
+        }
+        let mean = sum.map(|x| x / length);
+        let rises =
+            self.slice().iter().map(|(at, n)| dot(along(*n, 1.0, mean), along(point, -1.0, *at)) / 2.0);
+        (rises.sum::<f64>() / self.len as f64, mean)
+    }
+
     /// How far the farthest of their planes is from `point`.
     pub fn disagreement(&self, point: Point) -> f64 {
         let planes = self.slice().iter();
@@ -314,7 +329,7 @@ fn is_within_reach(point: Point) -> bool {
 }
 
 /// a + scale b.
-fn along(a: Point, scale: f64, b: Point) -> Point {
+pub fn along(a: Point, scale: f64, b: Point) -> Point {
     std::array::from_fn(|i| a[i] + scale * b[i])
 }
 

@@ -143,7 +143,7 @@ fn in_leaf(
 }
 
 /// Polygons with a place that is farther from the surface than this, in voxels, are looked at again.
-const FAR: f64 = 0.04;
+const FAR: f64 = 0.025;
 
 /// Whether a point is far from the surface. What the features of the polygon say is asked first; the surface
 /// itself has the last word.

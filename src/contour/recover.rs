@@ -6,7 +6,7 @@
 //! split, each only if the mesh stays embedded (see `patch`).
 
 use super::cells::Cells;
-use super::editor::{Editor, middle};
+use super::editor::Editor;
 use super::features::Sides;
 use super::patch::Bounds;
 use super::rounds::LeafMesh;
@@ -16,7 +16,10 @@ use crate::run::{Cancelled, RunSettings};
 type Point = [f64; 3];
 
 /// Around features, triangles and edges that are farther from the surface than this, in voxels, are split.
-const TOLERANCE: f64 = 0.05;
+const TOLERANCE: f64 = 0.03;
+
+/// Shares of the way to its place that a vertex goes if it cannot go all of it.
+const SHARES: [f64; 4] = [0.98, 0.9, 0.75, 0.5];
 
 /// Where a vertex ought to be.
 #[derive(Clone, Copy, Debug)]
@@ -107,16 +110,20 @@ impl Editor<'_> {
         recovered
     }
 
-    /// The next best for a vertex that cannot have its place: half-way there, or some place on the surface.
+    /// The next best for a vertex that cannot have its place: as near to it as it can come, or some place on the
+    /// surface. A vertex whose place is on the line between two others can nearly have it.
     fn console(&mut self, vertex: u32, place: Point) {
         let Some(from) = self.patch.position(vertex) else { return };
-        let half = self.grid.round(middle(from, place));
-        for place in [Some(half), self.place_on_surface(vertex)].into_iter().flatten() {
-            if self.error(place, &Sides::NONE) < self.error(from, &Sides::NONE)
-                && self.patch.try_move(vertex, place)
-            {
+        let error = self.error(from, &Sides::NONE);
+        let near = SHARES.map(|share| Some(self.grid.round(mix(from, place, share))));
+        for place in near.into_iter().chain([self.place_on_surface(vertex)]).flatten() {
+            if self.error(place, &Sides::NONE) < error && self.patch.try_move(vertex, place) {
                 return;
             }
         }
     }
+}
+
+fn mix(a: Point, b: Point, share: f64) -> Point {
+    std::array::from_fn(|i| a[i] + share * (b[i] - a[i]))
 }
