@@ -9,9 +9,12 @@
 //!
 //! exactly, for the coordinates as they are returned, which are those that a file of the chosen
 //! [`Precision`] can hold. It is void when the mesh is moved, scaled or rounded further afterwards.
-//! Creases and corners of the surface come out where the minimiser of the error function lies in its cell;
-//! elsewhere they are blunted by less than a voxel. `tests::random` proves the promise on random lattices with
-//! the exact audit of [`verify`](crate::verify), 10,000 of them and some of 24^3 nodes when `EXOCARP_HEAVY=1` is set.
+//! `tests` prove the promise on random lattices with the exact audit of [`verify`](crate::verify), thousands of them
+//! when `EXOCARP_HEAVY=1` is set; docs/contouring.md has the argument, and which test stands for which step.
+//!
+//! Where the surface can be asked for more than its crossings (a [`Surface`]), vertices are placed on its creases
+//! and corners, also outside of their cells, and the mesh can be refined to a tolerance. Nothing of the promise
+//! depends on what the surface answers.
 //!
 //! The way, a file for each step:
 //!
@@ -21,8 +24,12 @@
 //! | `cell`, `sheets` | the cube, and its 256 masks: pairs on faces, sheets, caps and their walls |
 //! | `numbering` | active cells and their vertices, numbered by ranks in bit masks |
 //! | `cells`, `qef`, `region`, `vertex` | the vertex of each sheet within its cell and its walls |
+//! | `surface`, `feature`, `features` | the surface's creases and corners, found and remembered |
 //! | `face_vertex` | vertices on faces where a connection would get in another sheet's way |
 //! | `envelope`, `polygonize` | convex/concave analysis, and the triangles around an edge |
+//! | `output` | all polygons, collected to a mesh |
+//! | `patch`, `editor`, `rounds` | changes of the finished mesh: the exact test, which to try, leaf by leaf |
+//! | `recover`, `refine` | vertices to places outside of their cells; the mesh to a tolerance |
 //! | `polygon_edges`, `cut_times` | the test that this analysis replaces, and the time of both |
 //!
 //! Why it holds: inside a cell lie the cones from its vertices over the triangles that crossed edges span with
@@ -32,9 +39,9 @@
 mod cell;
 mod cells;
 mod cut_times;
-mod face_vertex;
 mod editor;
 mod envelope;
+mod face_vertex;
 mod feature;
 mod features;
 mod grid;
@@ -110,10 +117,11 @@ pub enum ContourError {
 #[error("the result has more than 4294967295 vertices; choose a larger voxel size")]
 pub struct TooManyVertices;
 
-/// The surface between the inside and the outside nodes of `signs`, through `crossings`.
+/// The surface between the inside and the outside nodes of `signs`, through `crossings`. With `surface`, its creases
+/// and corners are asked for.
 ///
-/// Vertices come in the order cell vertices (by leaf, cell, sheet), face vertices, edge vertices; triangles
-/// in the order of their grid edges. The result is the same for every number of threads.
+/// Vertices come in the order cell vertices (by leaf, cell, sheet), face vertices, edge vertices, then those that
+/// splits added; triangles in the order of their grid edges, then those that splits added. The result is the same for every number of threads.
 ///
 /// # Errors
 /// When the run is cancelled, the result is too large, or the lattice reaches too far from the origin for
