@@ -87,7 +87,7 @@ pub fn cut_by(
     precision: Precision,
 ) -> (TriMesh, ContourStatistics) {
     let run = RunSettings::with_threads(2).unwrap();
-    let settings = ContourSettings { precision, cut: method };
+    let settings = ContourSettings { precision, cut: method, ..Default::default() };
     contour(signs, crossings, Lattice { voxel }, None, &settings, &run).unwrap()
 }
 
