@@ -25,8 +25,9 @@ const GAIN: f64 = 0.5;
 /// A place is taken when a vertex is as near as this, in voxels.
 const TAKEN: f64 = 0.01;
 
-/// How often what was split is split again.
-const DEPTH: u32 = 3;
+/// The most splits that come of one vertex. Where the surface jumps, splits do not bring it nearer, and would go on
+/// without end.
+const MOST_SPLITS: u64 = 12;
 
 /// A patch with the surface that it shall come near to.
 pub struct Editor<'a> {
@@ -83,18 +84,25 @@ impl Editor<'_> {
         (then < GAIN * now && self.patch.try_flip(edge)).then_some(())
     }
 
-    /// Splits the triangles at a vertex, and their edges, where they are far from the surface.
-    pub fn split_around(&mut self, vertex: u32, depth: u32) -> u64 {
+    /// Splits the triangles at a vertex, and their edges, where they are far from the surface, and what came of that
+    /// again.
+    pub fn split_around(&mut self, vertex: u32) -> u64 {
         let mut split = 0;
-        let mut open = self.patch.star(vertex);
-        while let Some(n) = open.pop() {
-            let Some(new) = self.split(n) else { continue };
-            split += 1;
-            self.flip_around(new);
-            if depth < DEPTH {
-                split += self.split_around(new, depth + 1);
+        let mut vertices = vec![vertex];
+        let mut next = 0;
+        while let Some(&vertex) = vertices.get(next) {
+            next += 1;
+            let mut open = self.patch.star(vertex);
+            while let Some(n) = open.pop() {
+                if split == MOST_SPLITS {
+                    return split;
+                }
+                let Some(new) = self.split(n) else { continue };
+                split += 1;
+                vertices.push(new);
+                self.flip_around(new);
+                open.retain(|&n| self.patch.triangle_at(n).vertices.contains(&vertex));
             }
-            open.retain(|&n| self.patch.triangle_at(n).vertices.contains(&vertex));
         }
         split
     }

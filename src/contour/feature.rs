@@ -30,6 +30,9 @@ const BESIDE: [f64; 2] = [0.2, 1e-3];
 /// Rounds of asking. Flat sides need one, curved ones three.
 const ROUNDS: usize = 5;
 
+/// Steps along gradients end at this distance, in voxels.
+const EXACTLY: f64 = 1e-6;
+
 /// Steps along gradients.
 const STEPS: usize = 12;
 
@@ -260,7 +263,7 @@ pub fn nearest(ask: &mut Asker<'_>, from: Point) -> Option<Point> {
     let (mut distance, mut normal) = ask.at(point);
     let mut share = 1.0;
     for _ in 0..STEPS {
-        if distance.abs() <= ON_SURFACE {
+        if distance.abs() <= EXACTLY {
             break;
         }
         let next = along(point, -share * distance, normal);

@@ -105,7 +105,7 @@ impl Editor<'_> {
         }
         recovered.refused = open.len() as u64;
         for wish in wishes {
-            recovered.split += self.split_around(wish.vertex, 0);
+            recovered.split += self.split_around(wish.vertex);
         }
         recovered
     }

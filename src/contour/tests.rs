@@ -2,4 +2,6 @@
 
 mod analytic;
 mod fields;
+mod liars;
 mod random;
+mod sharp;

@@ -57,7 +57,8 @@ fn steiner_errors(r: f64, voxel: f64) -> [f64; 2] {
 
 #[test]
 fn a_dilated_cube_converges_to_steiners_formulas_at_second_order() {
-    let [coarse, fine] = [0.1, 0.05].map(|voxel| steiner_errors(0.5, voxel));
+    // At radii below 8 voxels, vertices that are high above curved parts are taken down: the error is smaller there.
+    let [coarse, fine] = [0.05, 0.025].map(|voxel| steiner_errors(0.5, voxel));
     for (coarse, fine) in coarse.into_iter().zip(fine) {
         assert!(fine < 2e-3, "{fine}");
         // Halving h divides the error by four; 3 leaves room for higher orders.

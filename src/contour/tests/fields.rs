@@ -1,7 +1,7 @@
 //! Sign fields and crossings from functions.
 
 use crate::band::{Axis, Ijk, LEAF_DIM, LeafMask, SignField};
-use crate::contour::{ContourSettings, ContourStatistics, CutMethod, Lattice, Precision, contour};
+use crate::contour::{ContourSettings, ContourStatistics, CutMethod, Lattice, Precision, Surface, contour};
 use crate::edge::{Crossing, Crossings, EdgeNumbers};
 use crate::mesh::TriMesh;
 use crate::run::RunSettings;
@@ -108,6 +108,19 @@ pub fn run(
         &run,
     )
     .unwrap()
+}
+
+/// Contours with a surface to ask, and a tolerance in voxels.
+pub fn run_with(
+    (signs, crossings): &(SignField, Crossings),
+    voxel: f64,
+    (precision, tolerance): (Precision, Option<f64>),
+    threads: usize,
+    surface: &dyn Surface,
+) -> (TriMesh, ContourStatistics) {
+    let run = RunSettings::with_threads(threads).unwrap();
+    let settings = ContourSettings { precision, tolerance, ..ContourSettings::default() };
+    contour(signs, crossings, Lattice { voxel }, Some(surface), &settings, &run).unwrap()
 }
 
 /// A small generator of random numbers (splitmix64).

@@ -7,7 +7,7 @@ use crate::edge::{Crossing, Crossings};
 use crate::verify::tests::audit::audit;
 
 /// Whether the long run was asked for.
-fn is_heavy() -> bool {
+pub(super) fn is_heavy() -> bool {
     std::env::var_os("EXOCARP_HEAVY").is_some_and(|v| v == "1")
 }
 
@@ -27,7 +27,7 @@ fn nasty(random: &mut Random, signs: &SignField) -> Crossings {
 }
 
 /// A lattice of random signs in n^3 nodes from `corner` on.
-fn lattice(seed: u64, n: i32, corner: Ijk) -> (SignField, Crossings) {
+pub(super) fn lattice(seed: u64, n: i32, corner: Ijk) -> (SignField, Crossings) {
     let mut random = Random(seed);
     let density = 0.2 + 0.6 * random.unit();
     let nodes: Vec<bool> = (0..n * n * n).map(|_| random.unit() < density).collect();
@@ -41,7 +41,7 @@ fn lattice(seed: u64, n: i32, corner: Ijk) -> (SignField, Crossings) {
 
 /// Lattices: voxel size, lowest node, precision. The second has a few hundred, the third some ten
 /// 32-bit coordinates per voxel, the fourth node planes that are off by a thousandth of a voxel.
-const PLACES: [(f64, i32, Precision); 5] = [
+pub(super) const PLACES: [(f64, i32, Precision); 5] = [
     (1.0, 0, Precision::F32),
     (0.1, 200_000, Precision::F32),
     (0.1, -640_000, Precision::F32),
