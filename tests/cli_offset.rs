@@ -247,3 +247,33 @@ fn the_same_bytes_for_every_number_of_threads() {
     };
     assert!(write("1") == write("2"), "the meshes differ");
 }
+
+#[test]
+fn a_tolerance_refines_the_mesh_and_what_is_left_is_counted() {
+    let dir = tempfile::tempdir().unwrap();
+    let input = model(dir.path(), "carved_cube", "6");
+    let run = |tolerance: &[&str]| {
+        let (output, stats) = (dir.path().join("out.ply"), dir.path().join("out.json"));
+        let [output, stats] = [&output, &stats].map(|p| p.to_str().unwrap());
+        let mut arguments =
+            vec!["offset", &input, "-d", "4%", "--resolution", "24", "-o", output, "--stats", stats];
+        arguments.extend(tolerance);
+        assert_eq!(exocarp(&arguments).code, 0);
+        let json = json(Path::new(stats));
+        let voxel = json["settings"]["voxel"].as_f64().unwrap();
+        let report = dir.path().join("verify.json");
+        let report = report.to_str().unwrap();
+        assert_eq!(exocarp(&["verify", &input, output, "-d", "4%", "--json", report]).code, 0);
+        let verified = self::json(Path::new(report));
+        let worst = verified["distance"]["surface"]["p999"]["units"].as_f64().unwrap() / voxel;
+        (json["contour"].clone(), worst)
+    };
+    let (coarse, coarse_error) = run(&[]);
+    let (fine, fine_error) = run(&["--tolerance", "0.02h"]);
+    assert!(coarse["beyond_tolerance"].is_null());
+    assert!(fine["triangles"].as_u64() > coarse["triangles"].as_u64());
+    // Beside creases, splits do not reach everything.
+    assert!(fine["beyond_tolerance"].as_u64().unwrap() < fine["triangles"].as_u64().unwrap() / 100);
+    assert!(fine_error < 0.025 && coarse_error > 0.03, "{fine_error} {coarse_error}");
+    exocarp(&["offset", &input, "-d", "1", "-o", "x.ply", "--tolerance", "0"]).fails_with(2);
+}

@@ -51,7 +51,7 @@ impl Editor<'_> {
     /// Where a vertex that is far from the surface would be on it.
     pub fn place_on_surface(&mut self, vertex: u32) -> Option<Point> {
         let origin = self.patch.position(vertex)?;
-        let mut ask = Asker { surface: self.surface, origin, voxel: self.voxel(), hint: self.hint, count: 0 };
+        let mut ask = Asker { surface: self.surface, origin, voxel: self.voxel(), hint: self.hint };
         let is_far = ask.at([0.0; 3]).0.abs() > self.tolerance;
         let place = if is_far { nearest(&mut ask, [0.0; 3]) } else { None };
         self.hint = ask.hint;
@@ -148,8 +148,7 @@ impl Editor<'_> {
     /// Points of the surface near `from`: the crease or corner between the sides that are seen from there towards
     /// the points around, and the next point at all.
     fn surface_points(&mut self, from: Point, around: &[Point]) -> [Option<Point>; 2] {
-        let mut ask =
-            Asker { surface: self.surface, origin: from, voxel: self.voxel(), hint: self.hint, count: 0 };
+        let mut ask = Asker { surface: self.surface, origin: from, voxel: self.voxel(), hint: self.hint };
         let towards = around.iter().map(|p| std::array::from_fn(|i| 0.5 * (p[i] - from[i]) / self.voxel()));
         let crease = feature_between(&mut ask, towards);
         let next = nearest(&mut ask, [0.0; 3]);

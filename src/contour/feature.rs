@@ -115,14 +115,11 @@ pub struct Asker<'a> {
     pub voxel: f64,
     /// See [`Surface::at`].
     pub hint: u32,
-    /// Questions asked.
-    pub count: u64,
 }
 
 impl Asker<'_> {
     /// Distance in voxels and gradient at `local`.
     pub fn at(&mut self, local: Point) -> (f64, Point) {
-        self.count += 1;
         let world = std::array::from_fn(|a| self.origin[a] + self.voxel * local[a]);
         let (distance, gradient) = self.surface.at(world, &mut self.hint);
         (distance / self.voxel, gradient)

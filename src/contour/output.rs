@@ -120,7 +120,7 @@ fn in_leaf(
             {
                 let corners = polygon.corners();
                 let position = |v| corners.iter().find(|c| c.vertex == v).map_or(hub, |c| c.position);
-                let mut ask = Asker { surface, origin: fit.point, voxel: grid.voxel(), hint, count: 0 };
+                let mut ask = Asker { surface, origin: fit.point, voxel: grid.voxel(), hint };
                 let far = is_far(&output.triangles[first..], position, &fit, &mut ask);
                 output.far.extend(corners.iter().filter_map(|corner| {
                     let is_feature = cells.features.get(corner.vertex).is_some();

@@ -82,7 +82,7 @@ pub fn place<'a>(
         let is_unsure = samples.disagreement(minimiser.point) > UNSURE;
         if is_feature || is_unsure {
             let origin = grid.ideal(cell, [0.0; 3]);
-            let mut ask = Asker { surface, origin, voxel: grid.voxel(), hint, count: 0 };
+            let mut ask = Asker { surface, origin, voxel: grid.voxel(), hint };
             if is_feature {
                 found = feature(&mut ask, &samples, minimiser.point, qef.mean());
             }
