@@ -6,7 +6,8 @@
 //! whatever it was changed for; and since the triangles keep their neighbours, it stays closed and 2-manifold.
 //!
 //! All triangles that a change could meet must be in the patch: it holds every triangle whose box meets its
-//! bounds, and no change reaches beyond them.
+//! bounds, and no change reaches beyond them. Triangles are looked for by the leaf that they belong to, so each of
+//! them also stays near that one ([`PatchTriangle::home`]).
 
 use crate::geom::predicates::projection_axis;
 use crate::geom::triangle_pair::meeting_point;
@@ -54,7 +55,8 @@ impl Bounds {
             & (other.lo[2] <= self.hi[2])
     }
 
-    fn contains(&self, other: &Bounds) -> bool {
+    /// Whether `other` lies in this box.
+    pub fn contains(&self, other: &Bounds) -> bool {
         (0..3).all(|a| self.lo[a] <= other.lo[a] && other.hi[a] <= self.hi[a])
     }
 
@@ -75,7 +77,15 @@ pub struct PatchTriangle {
     pub vertices: [u32; 3],
     /// Their positions.
     pub corners: [Point; 3],
+    /// Which of the patch's homes it belongs to and may not leave.
+    pub home: u8,
 }
+
+/// The home of the triangles that a patch adds: its own leaf.
+pub const OWN_HOME: u8 = 13;
+
+/// The homes of a patch: around the leaf and each of its 26 neighbours, z fastest.
+pub type Homes = [Bounds; 27];
 
 impl PatchTriangle {
     fn bounds(&self) -> Bounds {
@@ -138,6 +148,7 @@ pub struct PatchEdge {
 #[derive(Debug)]
 pub struct Patch {
     bounds: Bounds,
+    homes: Homes,
     triangles: Vec<PatchTriangle>,
     /// Their vertices and boxes, which are searched all the time.
     vertices: Vec<[u32; 3]>,
@@ -148,9 +159,10 @@ pub struct Patch {
 
 impl Patch {
     /// The triangles among `triangles` whose boxes meet `bounds`.
-    pub fn new(bounds: Bounds, triangles: impl Iterator<Item = PatchTriangle>) -> Patch {
+    pub fn new(bounds: Bounds, homes: Homes, triangles: impl Iterator<Item = PatchTriangle>) -> Patch {
         let mut patch = Patch {
             bounds,
+            homes,
             triangles: Vec::new(),
             vertices: Vec::new(),
             boxes: Vec::new(),
@@ -192,7 +204,7 @@ impl Patch {
         let third = |k: usize| [corner(k), corner(k + 1), (new, at)];
         let next = self.triangles.len();
         let parts = [
-            (n, self.triangle(t.number, third(0))),
+            (n, self.reshaped(n, third(0))),
             (next, self.triangle(self.new_triangle(0), third(1))),
             (next + 1, self.triangle(self.new_triangle(1), third(2))),
         ];
@@ -206,11 +218,10 @@ impl Patch {
         let new = self.new_vertex()?;
         let x = (new, at);
         let next = self.triangles.len();
-        let (m, n) = (self.triangles[first].number, self.triangles[second].number);
         let parts = [
-            (first, self.triangle(m, [a, x, c])),
+            (first, self.reshaped(first, [a, x, c])),
             (next, self.triangle(self.new_triangle(0), [x, b, c])),
-            (second, self.triangle(n, [b, x, d])),
+            (second, self.reshaped(second, [b, x, d])),
             (next + 1, self.triangle(self.new_triangle(1), [x, a, d])),
         ];
         self.insert(&parts, new, at)
@@ -224,8 +235,20 @@ impl Patch {
         NEW_TRIANGLE + self.changes.new_triangles + n
     }
 
+    /// A triangle of the patch's own leaf.
     fn triangle(&self, number: usize, corners: [(u32, Point); 3]) -> PatchTriangle {
-        PatchTriangle { number, vertices: corners.map(|c| c.0), corners: corners.map(|c| c.1) }
+        PatchTriangle {
+            number,
+            vertices: corners.map(|c| c.0),
+            corners: corners.map(|c| c.1),
+            home: OWN_HOME,
+        }
+    }
+
+    /// Triangle `n` of the patch with other corners.
+    fn reshaped(&self, n: usize, corners: [(u32, Point); 3]) -> PatchTriangle {
+        let PatchTriangle { number, home, .. } = self.triangles[n];
+        PatchTriangle { home, ..self.triangle(number, corners) }
     }
 
     /// Accepts a split into `parts`, of which two are new.
@@ -248,8 +271,7 @@ impl Patch {
         if self.vertices.iter().any(joined) {
             return false;
         }
-        let part = |n: usize, corners| (n, self.triangle(self.triangles[n].number, corners));
-        let pair = [part(first, [a, d, c]), part(second, [d, b, c])];
+        let pair = [(first, self.reshaped(first, [a, d, c])), (second, self.reshaped(second, [d, b, c]))];
         if !self.accepts(&pair) {
             return false;
         }
@@ -264,6 +286,11 @@ impl Patch {
         let boxes: Vec<Bounds> = changed.iter().map(|(_, t)| t.bounds()).collect();
         let around = boxes.iter().fold(first.bounds(), |all, b| all.with(b));
         if !self.bounds.contains(&around) || !changed.iter().all(|(_, t)| t.has_area()) {
+            return false;
+        }
+        let is_at_home =
+            |((_, t), b): (&(usize, PatchTriangle), &Bounds)| self.homes[usize::from(t.home)].contains(b);
+        if !changed.iter().zip(&boxes).all(is_at_home) {
             return false;
         }
         for (i, (_, t)) in changed.iter().enumerate() {

@@ -4,7 +4,8 @@
 use super::cells::Cells;
 use super::feature::REACH;
 use super::patch::{Bounds, Changes, NEW_TRIANGLE, NEW_VERTEX, Patch, PatchTriangle};
-use crate::band::{LEAF_DIM, LeafId};
+use crate::band::LeafId;
+use crate::lattice::{Ijk, LEAF_DIM};
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};
 use rayon::prelude::*;
@@ -18,6 +19,14 @@ const MARGIN: f64 = 1.0 + REACH;
 
 const _: () =
     assert!(2.0 * MARGIN < LEAF_DIM as f64, "leaves of one round must not touch the same triangles");
+
+/// How far a triangle may be changed to reach beyond the leaf that it belongs to, in voxels, by whichever leaf around
+/// it. The patch of a leaf is made of the triangles of this leaf and of its 26 neighbours: those of a leaf further
+/// away must not reach into it.
+const STRAY: f64 = 4.0;
+
+const _: () = assert!(STRAY >= MARGIN, "a leaf must be able to change its own triangles");
+const _: () = assert!(STRAY + MARGIN < LEAF_DIM as f64, "a patch must hold all triangles in its bounds");
 
 /// A mesh whose triangles are known by leaf.
 #[derive(Debug)]
@@ -55,6 +64,7 @@ impl LeafMesh {
         if self.mesh.vertices.len() >= NEW_VERTEX as usize {
             return Ok(());
         }
+        debug_assert!(self.is_at_home(cells), "a triangle begins far from its leaf");
         let mut by_colour: [Vec<LeafId>; 8] = Default::default();
         for leaf in cells.signs.leaves() {
             by_colour[colour(cells.signs.origin(leaf).0)].push(leaf);
@@ -75,6 +85,7 @@ impl LeafMesh {
                 sum(done);
             }
         }
+        debug_assert!(self.is_at_home(cells), "a triangle strayed from its leaf");
         Ok(())
     }
 
@@ -82,23 +93,31 @@ impl LeafMesh {
     fn patch(&self, cells: &Cells<'_>, leaf: LeafId, places: &Bounds) -> Patch {
         let voxel = cells.grid.voxel();
         let margin = MARGIN * voxel;
-        let of_leaf = |leaf: LeafId| {
-            let origin = cells.signs.origin(leaf).0.map(|x| voxel * f64::from(x));
-            Bounds { lo: origin, hi: origin.map(|x| x + voxel * f64::from(LEAF_DIM)) }.grown(margin)
-        };
-        let bounds = places.grown(margin).within(&of_leaf(leaf));
-        let around = (0..27)
-            .filter_map(|n| cells.signs.neighbour(leaf, [n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1]))
-            .filter(|&leaf| of_leaf(leaf).meets(&bounds));
-        let numbers = around.flat_map(|leaf| self.triangles(leaf));
-        Patch::new(
-            bounds,
-            numbers.map(|number| PatchTriangle {
+        let bounds = places.grown(margin).within(&around_leaf(cells, leaf, MARGIN));
+        let origin = cells.signs.origin(leaf);
+        let delta = |n: i32| [n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1];
+        let homes = std::array::from_fn(|n| {
+            around(origin + Ijk(delta(n as i32).map(|d| LEAF_DIM * d)), voxel, STRAY)
+        });
+        let near = (0..27).filter(|&n: &i32| homes[n as usize].meets(&bounds));
+        let leaves = near.filter_map(|n| Some((n as u8, cells.signs.neighbour(leaf, delta(n))?)));
+        let triangles = leaves.flat_map(|(home, leaf)| {
+            self.triangles(leaf).map(move |number| PatchTriangle {
                 number,
                 vertices: self.mesh.triangles[number],
                 corners: self.mesh.corners(number),
-            }),
-        )
+                home,
+            })
+        });
+        Patch::new(bounds, homes, triangles)
+    }
+
+    /// Whether every triangle is as near to its leaf as patches take it to be.
+    fn is_at_home(&self, cells: &Cells<'_>) -> bool {
+        cells.signs.leaves().all(|leaf| {
+            let home = around_leaf(cells, leaf, STRAY);
+            self.triangles(leaf).all(|n| home.contains(&Bounds::around(self.corners(n))))
+        })
     }
 
     /// Puts what a patch changed into the mesh.
@@ -122,6 +141,17 @@ impl LeafMesh {
     pub fn corners(&self, triangle: usize) -> [Point; 3] {
         self.mesh.corners(triangle)
     }
+}
+
+/// A leaf with `reach` voxels around it.
+fn around_leaf(cells: &Cells<'_>, leaf: LeafId, reach: f64) -> Bounds {
+    around(cells.signs.origin(leaf), cells.grid.voxel(), reach)
+}
+
+/// The leaf at `origin` with `reach` voxels around it.
+fn around(origin: Ijk, voxel: f64, reach: f64) -> Bounds {
+    let lo = origin.0.map(|x| voxel * f64::from(x));
+    Bounds { lo, hi: lo.map(|x| x + voxel * f64::from(LEAF_DIM)) }.grown(reach * voxel)
 }
 
 /// Leaves of one colour have another leaf between them along some axis.
