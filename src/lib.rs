@@ -10,6 +10,7 @@ pub mod io;
 pub mod ssvh;
 pub mod distance;
 pub mod filter;
+pub mod candidates;
 pub mod band;
 pub mod vdb;
 pub mod edge;

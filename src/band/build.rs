@@ -1,11 +1,14 @@
 //! Builds the narrow band: bounding boxes in parallel, leaves out in a fixed order.
 
 use super::LeafBatch;
+use super::leaf::Leaf;
+use crate::candidates::Narrowing;
 use crate::distance::SignedDistance;
 use crate::filter::{Block, BoxSide, Filter, FilterSettings, FilterStatistics, Switch, Verdict};
 use crate::geom::aabb::Aabb;
-use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, Lattice};
+use crate::lattice::{Ijk, LEAF_DIM, Lattice};
 use crate::run::{Cancelled, Phase, RunSettings};
+use crate::ssvh::Hit;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -155,9 +158,10 @@ fn bounding_boxes([lo, hi]: [Ijk; 2], side: BoxSide) -> Vec<Block> {
     boxes
 }
 
-struct Worker<'a> {
-    filter: Filter<'a>,
-    settings: BandSettings,
+/// Fills leaves.
+pub(super) struct Worker<'a> {
+    pub(super) filter: Filter<'a>,
+    pub(super) settings: BandSettings,
 }
 
 impl Worker<'_> {
@@ -169,9 +173,9 @@ impl Worker<'_> {
         let filled: Vec<(LeafBatch, FilterStatistics)> = boxes
             .par_iter()
             .with_max_len(1)
-            .map(|&block| {
+            .map_init(Narrowing::default, |narrowing, &block| {
                 phase.advance(1)?;
-                Ok(self.bounding_box(block))
+                Ok(self.bounding_box(block, narrowing))
             })
             .collect::<Result<_, Cancelled>>()?;
         let mut batch = LeafBatch::default();
@@ -183,10 +187,10 @@ impl Worker<'_> {
         Ok((batch, statistics))
     }
 
-    fn bounding_box(&self, block: Block) -> (LeafBatch, FilterStatistics) {
+    fn bounding_box(&self, block: Block, narrowing: &mut Narrowing) -> (LeafBatch, FilterStatistics) {
         let mut statistics = FilterStatistics::default();
         let mut batch = LeafBatch::default();
-        let mut kept: Vec<(Ijk, u32)> = Vec::new();
+        let mut kept: Vec<(Ijk, u32, f64)> = Vec::new();
         match self.filter.bounding_box(block, &mut statistics) {
             Verdict::Outside => {}
             Verdict::Inside => batch.inside_blocks.push((block.origin, block.side)),
@@ -196,144 +200,69 @@ impl Worker<'_> {
                 }
             }
             // A box of a single leaf has no smaller ones above the leaf's own.
-            Verdict::Kept { triangle, .. } if block.side == LEAF_DIM => kept.push((block.origin, triangle)),
+            Verdict::Kept { triangle, distance } if block.side == LEAF_DIM => {
+                kept.push((block.origin, triangle, distance));
+            }
             Verdict::Kept { triangle, .. } => {
                 self.filter.octree(block, triangle, LEAF_DIM, &mut statistics, &mut |block, verdict| {
                     match verdict {
                         Verdict::Outside => {}
                         Verdict::Inside => batch.inside_blocks.push((block.origin, block.side)),
-                        Verdict::Kept { triangle, .. } => kept.push((block.origin, triangle)),
+                        Verdict::Kept { triangle, distance } => {
+                            kept.push((block.origin, triangle, distance));
+                        }
                     }
                 });
             }
         }
-        for (origin, triangle) in kept {
-            self.leaf(origin, triangle, &mut batch, &mut statistics);
+        for (origin, triangle, distance) in kept {
+            if self.filter.settings.candidates == Switch::On {
+                self.leaf_by_lists(origin, triangle, distance, narrowing, &mut batch, &mut statistics);
+            } else {
+                self.leaf_by_queries(origin, triangle, &mut batch, &mut statistics);
+            }
         }
         (batch, statistics)
     }
 
-    /// Evaluates the leaf at `origin` through the octree filter and appends it.
-    fn leaf(&self, origin: Ijk, triangle: u32, batch: &mut LeafBatch, statistics: &mut FilterStatistics) {
-        let mut leaf = Leaf::new();
-        let background = self.settings.background();
-        let mut kept: [(Ijk, u32, f64); 64] = [(Ijk::default(), 0, 0.0); 64];
-        let mut kept_count = 0;
-        let block = Block { origin, side: LEAF_DIM };
-        self.filter.octree(block, triangle, 2, statistics, &mut |block, verdict| match verdict {
-            Verdict::Outside => leaf.fill(block, background),
-            Verdict::Inside => leaf.fill(block, -background),
-            Verdict::Kept { triangle, distance } => {
-                kept[kept_count] = (block.origin, triangle, distance);
-                kept_count += 1;
-            }
-        });
-        for &(origin, triangle, distance) in &kept[..kept_count] {
-            self.nodes(Block { origin, side: 2 }, triangle, distance, &mut leaf, statistics);
-        }
-        leaf.finish(origin, batch);
+    /// The sign of the distance in all of a block whose centre has the signed distance `centre`, where that is farther
+    /// from the surface than any node is from the centre.
+    pub(super) fn side_around(&self, block: Block, centre: f64) -> Option<f64> {
+        let is_far = centre.abs() > block.radius(self.filter.lattice) * (1.0 + 1e-9);
+        is_far.then_some(1f64.copysign(centre))
     }
 
-    /// Evaluates every node of the leaf at `origin`: what is left to do without the octree filter.
-    fn whole_leaf(
+    /// Sets eight nodes by their closest triangles, and returns how many of them are valid. `side` is the sign of their
+    /// distances, where that is known.
+    pub(super) fn set_nodes(
         &self,
-        origin: Ijk,
-        triangle: u32,
-        batch: &mut LeafBatch,
+        nodes: &[Ijk; 8],
+        points: &[DVec3; 8],
+        hits: &[Hit; 8],
+        side: Option<f64>,
+        leaf: &mut Leaf,
         statistics: &mut FilterStatistics,
-    ) {
-        let mut leaf = Leaf::new();
-        for number in (0..LEAF_SIZE).filter(|n| n & 0b001_001_001 == 0) {
-            let block = Block { origin: Ijk::in_leaf(origin, number), side: 2 };
-            // A centre on the surface decides no sign.
-            self.nodes(block, triangle, 0.0, &mut leaf, statistics);
+    ) -> u64 {
+        let Filter { distance, lattice, r, .. } = self.filter;
+        let background = self.settings.background();
+        let mut valid = 0;
+        for ((node, &p), hit) in nodes.iter().zip(points).zip(hits) {
+            let signed = match side {
+                Some(side) => side * hit.distance_squared.sqrt(),
+                None => distance.from_triangle(p, hit.triangle).distance,
+            };
+            let phi = self.settled(signed - r, p);
+            valid += u64::from(phi.abs() <= lattice.voxel);
+            leaf.set(node.number_in_leaf(), phi, hit.triangle, background);
         }
-        leaf.finish(origin, batch);
+        statistics.node_queries += 8;
+        statistics.valid_nodes += valid;
+        valid
     }
 
     /// `phi` at `p`, or 0 where it is so close to 0 that only rounding gives it a sign.
     fn settled(&self, phi: f64, p: DVec3) -> f64 {
         let rounding = 4.0 * f64::EPSILON * (p.abs().max_element() + self.settings.r.abs());
         if phi.abs() <= ON_SURFACE * self.settings.lattice.voxel + rounding { 0.0 } else { phi }
-    }
-
-    /// Evaluates the eight nodes of a block of side 2 whose centre has the signed distance `centre`.
-    fn nodes(
-        &self,
-        block: Block,
-        triangle: u32,
-        centre: f64,
-        leaf: &mut Leaf,
-        statistics: &mut FilterStatistics,
-    ) {
-        let Filter { distance, lattice, r, .. } = self.filter;
-        let background = self.settings.background();
-        // Farther from the surface than any node from the centre: the sign is that of the centre.
-        let one_side = centre.abs() > block.radius(lattice) * (1.0 + 1e-9);
-        let nodes = block.children().map(|b| b.origin);
-        let points = nodes.map(|node| DVec3::from(lattice.world_from_index(node)));
-        let hits = distance.ssvh().closest_to_eight(&points, triangle);
-        for ((node, p), hit) in nodes.into_iter().zip(points).zip(hits) {
-            let signed = if one_side {
-                hit.distance_squared.sqrt().copysign(centre)
-            } else {
-                distance.from_triangle(p, hit.triangle).distance
-            };
-            let phi = self.settled(signed - r, p);
-            statistics.node_queries += 1;
-            statistics.valid_nodes += u64::from(phi.abs() <= lattice.voxel);
-            let number = node.number_in_leaf();
-            if phi.abs() < f64::from(background) {
-                leaf.values[number] = stored(phi, background);
-                leaf.closest[number] = hit.triangle as i32;
-                leaf.active[number >> 6] |= 1 << (number & 63);
-            } else {
-                leaf.values[number] = background.copysign(phi as f32);
-            }
-        }
-    }
-}
-
-/// phi as an f32 that keeps its sign and stays below the background; zero becomes the smallest positive
-/// value.
-fn stored(phi: f64, background: f32) -> f32 {
-    let magnitude = (phi.abs() as f32).clamp(f32::MIN_POSITIVE, background.next_down());
-    if phi < 0.0 { -magnitude } else { magnitude }
-}
-
-struct Leaf {
-    values: [f32; LEAF_SIZE],
-    active: [u64; 8],
-    closest: [i32; LEAF_SIZE],
-}
-
-impl Leaf {
-    fn new() -> Self {
-        Leaf { values: [0.0; LEAF_SIZE], active: [0; 8], closest: [-1; LEAF_SIZE] }
-    }
-
-    /// Appends the leaf at `origin` to `batch`, unless no node of it is active.
-    fn finish(&self, origin: Ijk, batch: &mut LeafBatch) {
-        let uniform = || self.values.iter().all(|v| v.signum() == self.values[0].signum());
-        if self.active.iter().any(|&word| word != 0) || !uniform() {
-            batch.origins.push(origin);
-            batch.values.extend_from_slice(&self.values);
-            batch.active.push(self.active);
-            batch.closest.extend_from_slice(&self.closest);
-        } else if self.values[0] < 0.0 {
-            // Without active nodes there is no sign change, unless the input is not closed.
-            batch.inside_blocks.push((origin, LEAF_DIM));
-        }
-    }
-
-    fn fill(&mut self, block: Block, value: f32) {
-        let first = block.origin.number_in_leaf();
-        let side = block.side as usize;
-        for x in 0..side {
-            for y in 0..side {
-                let row = first + 64 * x + 8 * y;
-                self.values[row..row + side].fill(value);
-            }
-        }
     }
 }

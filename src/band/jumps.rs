@@ -2,6 +2,7 @@
 //! closed, or is and intersects itself: there the offset solid is closed along the jump.
 
 use super::LeafBatch;
+use crate::candidates::BlockLists;
 use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE};
 use std::collections::HashSet;
 
@@ -39,6 +40,7 @@ pub fn leaves_at_jumps(
         active: vec![[0; 8]; count],
         closest: vec![-1; count * LEAF_SIZE],
         inside_blocks: Vec::new(),
+        lists: BlockLists::default(),
     }
 }
 

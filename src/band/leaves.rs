@@ -1,6 +1,7 @@
 //! The working form of the band: leaves in plain arrays, as they cross the bridge to OpenVDB.
 
 use super::LeafMask;
+use crate::candidates::BlockLists;
 use crate::lattice::{Ijk, LEAF_SIZE};
 
 /// A batch of leaves, structure of arrays: entry n of `values` and `closest` belongs to node n % 512 of
@@ -17,6 +18,8 @@ pub struct LeafBatch {
     pub closest: Vec<i32>,
     /// Blocks (origin, side; the side a multiple of 8) that are inside as a whole and hold no leaf.
     pub inside_blocks: Vec<(Ijk, i32)>,
+    /// The candidate lists of the leaves; empty ones where the band was built without.
+    pub lists: BlockLists,
 }
 
 impl LeafBatch {
@@ -37,6 +40,7 @@ impl LeafBatch {
         self.active.append(&mut other.active);
         self.closest.append(&mut other.closest);
         self.inside_blocks.append(&mut other.inside_blocks);
+        self.lists.append(&mut other.lists);
     }
 }
 

@@ -1,8 +1,11 @@
 //! The narrow band around the offset surface (\[LW11\] section IV).
 
 mod build;
+mod by_lists;
+mod by_queries;
 mod count;
 mod jumps;
+mod leaf;
 mod leaves;
 mod signs;
 #[cfg(test)]

@@ -6,7 +6,7 @@
 //! for the sign of a node outside it.
 
 use crate::lattice::{Axis, Ijk, LEAF_DIM};
-use std::collections::HashMap;
+use rayon::prelude::*;
 
 /// The number of a leaf within its [`SignField`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -35,6 +35,20 @@ fn neighbour_origin(origin: Ijk, slot: usize) -> Ijk {
     origin + Ijk([s / 9 - 1, s / 3 % 3 - 1, s % 3 - 1].map(|d| d * LEAF_DIM))
 }
 
+/// For each of the leaves, sorted by origin, the number of its neighbour in a slot, or [`NONE`]. The neighbours' origins
+/// ascend as the leaves' do, so both are gone through side by side.
+fn find_shifted(origins: &[Ijk], slot: usize) -> Vec<u32> {
+    let mut next = 0;
+    let find = |&origin: &Ijk| {
+        let neighbour = neighbour_origin(origin, slot);
+        while origins.get(next).is_some_and(|&o| o < neighbour) {
+            next += 1;
+        }
+        if origins.get(next) == Some(&neighbour) { next as u32 } else { NONE }
+    };
+    origins.iter().map(find).collect()
+}
+
 impl SignField {
     /// The field of the leaves given by `origins` and `inside` masks, in any order, no origin twice.
     /// `missing` is asked once for all neighbouring leaves that the band lacks (a sorted list of their
@@ -46,27 +60,30 @@ impl SignField {
         missing: impl FnOnce(&[Ijk]) -> Result<Vec<bool>, E>,
     ) -> Result<Self, E> {
         assert_eq!(origins.len(), inside.len(), "one mask for each leaf");
-        let known: std::collections::HashSet<Ijk> = origins.iter().copied().collect();
-        let mut ring: Vec<Ijk> = origins
-            .iter()
-            .flat_map(|&o| (0..27).map(move |s| neighbour_origin(o, s)))
-            .filter(|o| !known.contains(o))
+        let mut all: Vec<(Ijk, LeafMask)> = origins.iter().copied().zip(inside.iter().copied()).collect();
+        all.sort_unstable_by_key(|&(origin, _)| origin);
+        assert!(all.windows(2).all(|pair| pair[0].0 != pair[1].0), "a leaf was given twice");
+
+        let band: Vec<Ijk> = all.iter().map(|&(origin, _)| origin).collect();
+        let mut ring: Vec<Ijk> = (0..27usize)
+            .into_par_iter()
+            .flat_map_iter(|slot| {
+                let found = find_shifted(&band, slot);
+                let missing = band.iter().zip(found).filter(|(_, found)| *found == NONE);
+                missing.map(|(&origin, _)| neighbour_origin(origin, slot)).collect::<Vec<_>>()
+            })
             .collect();
-        ring.sort_unstable();
+        ring.par_sort_unstable();
         ring.dedup();
         let ring_inside = missing(&ring)?;
         assert_eq!(ring.len(), ring_inside.len(), "one sign for each missing leaf");
 
-        let mut all: Vec<(Ijk, LeafMask)> = origins.iter().copied().zip(inside.iter().copied()).collect();
         all.extend(ring.into_iter().zip(ring_inside.into_iter().map(|i| if i { [!0; 8] } else { [0; 8] })));
-        all.sort_unstable_by_key(|&(origin, _)| origin);
+        all.par_sort_unstable_by_key(|&(origin, _)| origin);
         let (origins, inside): (Vec<Ijk>, Vec<LeafMask>) = all.into_iter().unzip();
-        let number: HashMap<Ijk, u32> = origins.iter().zip(0..).map(|(&o, n)| (o, n)).collect();
-        assert_eq!(number.len(), origins.len(), "a leaf was given twice");
-        let neighbours = origins
-            .iter()
-            .map(|&o| std::array::from_fn(|s| number.get(&neighbour_origin(o, s)).copied().unwrap_or(NONE)))
-            .collect();
+        let by_slot: Vec<Vec<u32>> =
+            (0..27usize).into_par_iter().map(|slot| find_shifted(&origins, slot)).collect();
+        let neighbours = (0..origins.len()).map(|n| std::array::from_fn(|slot| by_slot[slot][n])).collect();
         Ok(SignField { origins, inside, neighbours })
     }
 

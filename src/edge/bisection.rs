@@ -14,8 +14,8 @@ pub(super) fn solve(
 ) -> Root {
     statistics.intersected += 1;
     let [inside, outside] = edge.triangles;
-    let mut low = End { t: 0.0, sample: solver.node(edge.inside, inside, statistics) };
-    let mut high = End { t: 1.0, sample: solver.node(edge.outside, outside, statistics) };
+    let mut low = End { t: 0.0, sample: solver.node(edge, edge.inside, inside, statistics) };
+    let mut high = End { t: 1.0, sample: solver.node(edge, edge.outside, outside, statistics) };
     // A node on the surface is the root, as for the hybrid method.
     if let Some(end) = [low, high].into_iter().find(|end| solver.is_root(end)) {
         statistics.by_subdivision[0] += 1;

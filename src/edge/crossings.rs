@@ -6,6 +6,7 @@
 
 use crate::band::{LeafId, LeafMask, SignField};
 use crate::lattice::Axis;
+use rayon::prelude::*;
 
 /// The number of an intersected edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -38,21 +39,29 @@ impl EdgeNumbers {
     /// # Errors
     /// When there are more than 2^32 - 1 of them.
     pub fn new(signs: &SignField) -> Result<Self, TooManyEdges> {
-        let mut count: u64 = 0;
-        let mut leaves = Vec::with_capacity(signs.len());
-        for leaf in signs.leaves() {
-            let masks = Axis::ALL.map(|axis| signs.crossed_edges(leaf, axis));
-            let first = u32::try_from(count).map_err(|_| TooManyEdges)?;
-            let mut before = [[0; 8]; 3];
-            let mut in_leaf = 0;
-            for (mask, before) in masks.iter().zip(&mut before) {
-                for (word, before) in mask.iter().zip(before) {
-                    *before = in_leaf;
-                    in_leaf += word.count_ones() as u16;
+        let ids: Vec<LeafId> = signs.leaves().collect();
+        let mut leaves: Vec<LeafEdges> = ids
+            .into_par_iter()
+            .with_min_len(64)
+            .map(|leaf| {
+                let masks = Axis::ALL.map(|axis| signs.crossed_edges(leaf, axis));
+                let mut before = [[0; 8]; 3];
+                let mut in_leaf = 0;
+                for (mask, before) in masks.iter().zip(&mut before) {
+                    for (word, before) in mask.iter().zip(before) {
+                        *before = in_leaf;
+                        in_leaf += word.count_ones() as u16;
+                    }
                 }
-            }
-            count += u64::from(in_leaf);
-            leaves.push(LeafEdges { masks, first, before });
+                // A count for now; the prefix sums follow.
+                LeafEdges { masks, first: u32::from(in_leaf), before }
+            })
+            .collect();
+        let mut count: u64 = 0;
+        for leaf in &mut leaves {
+            let next = count + u64::from(leaf.first);
+            leaf.first = u32::try_from(count).map_err(|_| TooManyEdges)?;
+            count = next;
         }
         let count = u32::try_from(count).map_err(|_| TooManyEdges)?;
         Ok(EdgeNumbers { leaves, count })

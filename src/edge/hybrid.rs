@@ -2,9 +2,9 @@
 //! share a triangle, verified by a query, bisection otherwise, with a new analytic attempt after each
 //! subdivision.
 
-use super::analytic;
 use super::shared::shared_triangle;
 use super::statistics::{COUNTED_SUBDIVISIONS, EdgeStatistics};
+use super::{Crossing, analytic};
 use crate::distance::{Sample, SignedDistance};
 use glam::DVec3;
 
@@ -18,12 +18,38 @@ pub(super) const SHORTEST: f64 = 1e-9;
 
 /// A grid edge, with what the band knows of its ends.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct GridEdge {
+pub(super) struct GridEdge<'a> {
     /// World positions of the end that is inside the offset solid and of the one outside.
     pub(super) inside: DVec3,
     pub(super) outside: DVec3,
     /// A triangle near each end, exact if `known`.
     pub(super) triangles: [NodeTriangle; 2],
+    /// Positions in the hierarchy of the triangles that can be closest to a point of the edge, where they are known.
+    pub(super) candidates: Option<&'a [u32]>,
+    /// How it runs along its axis.
+    pub(super) direction: Direction,
+    /// A triangle near it, if one is known.
+    pub(super) hint: u32,
+}
+
+/// Which way an edge leaves the offset solid, going up its axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Direction {
+    /// From the inside to the outside.
+    Out,
+    /// From the outside to the inside.
+    In,
+}
+
+impl GridEdge<'_> {
+    /// The crossing at a root.
+    pub(super) fn crossing(&self, root: Root) -> Crossing {
+        let t = match self.direction {
+            Direction::Out => root.t,
+            Direction::In => 1.0 - root.t,
+        };
+        Crossing { t, normal: root.normal.as_vec3().to_array(), hint: self.hint }
+    }
 }
 
 /// The closest triangle of a node.
@@ -52,6 +78,21 @@ pub(super) struct End {
     pub(super) sample: Sample,
 }
 
+/// The two ends of the interval that brackets the root.
+#[derive(Clone, Copy)]
+struct Bracket {
+    low: End,
+    high: End,
+}
+
+/// Where one triangle alone would have the root.
+#[derive(Clone, Copy)]
+struct Proposal {
+    /// Position between the inside end (0) and the outside end (1).
+    t: f64,
+    triangle: u32,
+}
+
 pub(super) struct Solver<'a> {
     pub(super) distance: &'a SignedDistance<'a>,
     pub(super) r: f64,
@@ -61,27 +102,105 @@ pub(super) struct Solver<'a> {
 impl Solver<'_> {
     /// The intersection of `edge`.
     pub(super) fn solve(&self, edge: &GridEdge, statistics: &mut EdgeStatistics) -> Root {
+        match self.bracket(edge, statistics) {
+            Ok(bracket) => {
+                let tried = self.propose(edge, &bracket).map(|p| self.end(edge, p.t, p.triangle, statistics));
+                self.go_on(edge, bracket, tried, statistics)
+            }
+            Err(root) => root,
+        }
+    }
+
+    /// The intersections of up to eight edges that have the candidates `near` in common, each as
+    /// [`solve`](Self::solve) finds it. Their first attempts are verified together.
+    pub(super) fn solve_together(
+        &self,
+        edges: &[GridEdge],
+        near: &[u32],
+        statistics: &mut EdgeStatistics,
+        roots: &mut [Root; 8],
+    ) {
+        let mut points = [DVec3::ZERO; 8];
+        let mut open: [Option<(Bracket, Option<Proposal>)>; 8] = [None; 8];
+        let mut proposed = 0;
+        for (n, edge) in edges.iter().enumerate() {
+            match self.bracket(edge, statistics) {
+                Ok(bracket) => {
+                    let proposal = self.propose(edge, &bracket);
+                    if let Some(Proposal { t, .. }) = proposal {
+                        points[proposed] = self.at(edge, t);
+                        proposed += 1;
+                    }
+                    open[n] = Some((bracket, proposal));
+                }
+                Err(root) => roots[n] = root,
+            }
+        }
+        if proposed > 0 {
+            // Lanes that are left over repeat one that is used.
+            let used = points[0];
+            points[proposed..].fill(used);
+        }
+        statistics.queries += proposed as u64;
+        let hits = (proposed > 0).then(|| self.distance.ssvh().closest_of_to_eight(near, &points, proposed));
+        let mut answers = points.iter().zip(hits.iter().flatten());
+        for (n, edge) in edges.iter().enumerate() {
+            let Some((bracket, proposal)) = open[n] else { continue };
+            let tried = proposal.and_then(|Proposal { t, .. }| {
+                let (&p, hit) = answers.next()?;
+                Some(End { t, sample: self.distance.from_triangle(p, hit.triangle) })
+            });
+            roots[n] = self.go_on(edge, bracket, tried, statistics);
+        }
+    }
+
+    /// The ends of an edge with their distances; its root at once where there is nothing to solve.
+    fn bracket(&self, edge: &GridEdge, statistics: &mut EdgeStatistics) -> Result<Bracket, Root> {
         statistics.intersected += 1;
         let [inside, outside] = edge.triangles;
-        let mut low = End { t: 0.0, sample: self.node(edge.inside, inside, statistics) };
-        let mut high = End { t: 1.0, sample: self.node(edge.outside, outside, statistics) };
+        let low = End { t: 0.0, sample: self.node(edge, edge.inside, inside, statistics) };
+        let high = End { t: 1.0, sample: self.node(edge, edge.outside, outside, statistics) };
         // A node on the surface is the root; rounding may have given its distance either sign.
         if let Some(end) = [low, high].into_iter().find(|end| self.is_root(end)) {
             statistics.by_subdivision[0] += 1;
-            return self.finish(edge, end);
+            return Err(self.finish(edge, end));
         }
         // The band decided the signs; where an open mesh makes the distance disagree, nothing is bracketed.
         if self.phi(&low) >= 0.0 || self.phi(&high) < 0.0 {
-            return self.jump(edge, 0.5, statistics);
+            return Err(self.jump(edge, 0.5, statistics));
         }
+        Ok(Bracket { low, high })
+    }
+
+    /// The analytic attempt between two ends.
+    fn propose(&self, edge: &GridEdge, Bracket { low, high }: &Bracket) -> Option<Proposal> {
+        let triangle = shared_triangle(self.distance, &low.sample, &high.sample)?;
+        let ends = [self.at(edge, low.t), self.at(edge, high.t)];
+        let s = analytic::root(self.distance.ssvh().triangle(triangle), ends[0], ends[1], self.r)?;
+        Some(Proposal { t: low.t + s * (high.t - low.t), triangle })
+    }
+
+    /// Takes the point that was tried first, if there was one, for the root, or for a tighter interval, and goes on
+    /// from there by halving and trying.
+    fn go_on(
+        &self,
+        edge: &GridEdge,
+        Bracket { mut low, mut high }: Bracket,
+        mut tried: Option<End>,
+        statistics: &mut EdgeStatistics,
+    ) -> Root {
         let mut subdivisions = 0;
         loop {
-            if let Some(root) = self.attempt(edge, &mut low, &mut high, statistics) {
-                match statistics.by_subdivision.get_mut(subdivisions) {
-                    Some(count) => *count += 1,
-                    None => statistics.bisected += 1,
+            if let Some(root) = tried {
+                if self.is_root(&root) {
+                    match statistics.by_subdivision.get_mut(subdivisions) {
+                        Some(count) => *count += 1,
+                        None => statistics.bisected += 1,
+                    }
+                    return self.finish(edge, root);
                 }
-                return self.finish(edge, root);
+                // Not a root of the whole mesh, but on a known side: as good as a subdivision, and already paid.
+                self.replace(&mut low, &mut high, root);
             }
             let middle = self.end(edge, 0.5 * (low.t + high.t), low.sample.triangle, statistics);
             subdivisions += 1;
@@ -93,28 +212,9 @@ impl Solver<'_> {
             if high.t - low.t < SHORTEST {
                 return self.collapsed(edge, low, high, statistics);
             }
+            let proposal = self.propose(edge, &Bracket { low, high });
+            tried = proposal.map(|p| self.end(edge, p.t, p.triangle, statistics));
         }
-    }
-
-    /// The analytic attempt between two ends: a verified root, or a tighter interval.
-    fn attempt(
-        &self,
-        edge: &GridEdge,
-        low: &mut End,
-        high: &mut End,
-        statistics: &mut EdgeStatistics,
-    ) -> Option<End> {
-        let shared = shared_triangle(self.distance, &low.sample, &high.sample)?;
-        let triangle = self.distance.ssvh().triangle(shared);
-        let s = analytic::root(triangle, self.at(edge, low.t), self.at(edge, high.t), self.r)?;
-        let t = low.t + s * (high.t - low.t);
-        let root = self.end(edge, t, shared, statistics);
-        if self.is_root(&root) {
-            return Some(root);
-        }
-        // Not a root of the whole mesh, but on a known side: as good as a subdivision, and already paid.
-        self.replace(low, high, root);
-        None
     }
 
     /// The interval shrank to nothing: a root that rounding keeps from being recognised, or a jump.
@@ -163,15 +263,28 @@ impl Solver<'_> {
 
     pub(super) fn end(&self, edge: &GridEdge, t: f64, guess: u32, statistics: &mut EdgeStatistics) -> End {
         statistics.queries += 1;
-        End { t, sample: self.distance.at(self.at(edge, t), guess) }
+        End { t, sample: self.ask(edge, self.at(edge, t), guess) }
     }
 
-    pub(super) fn node(&self, p: DVec3, triangle: NodeTriangle, statistics: &mut EdgeStatistics) -> Sample {
+    fn ask(&self, edge: &GridEdge, p: DVec3, guess: u32) -> Sample {
+        match edge.candidates {
+            Some(candidates) => self.distance.among(p, candidates),
+            None => self.distance.at(p, guess),
+        }
+    }
+
+    pub(super) fn node(
+        &self,
+        edge: &GridEdge,
+        p: DVec3,
+        triangle: NodeTriangle,
+        statistics: &mut EdgeStatistics,
+    ) -> Sample {
         match triangle {
             NodeTriangle::Known(t) => self.distance.from_triangle(p, t),
             NodeTriangle::Guess(t) => {
                 statistics.queries += 1;
-                self.distance.at(p, t)
+                self.ask(edge, p, t)
             }
         }
     }

@@ -12,5 +12,5 @@ mod solve;
 mod statistics;
 
 pub use crossings::{Crossing, Crossings, EdgeId, EdgeNumbers, TooManyEdges, bits};
-pub use solve::{EdgeSettings, NodeTriangles, RootMethod, solve, solve_by};
+pub use solve::{EdgeSettings, NearTriangles, NodeTriangles, RootMethod, solve, solve_by};
 pub use statistics::EdgeStatistics;

@@ -1,10 +1,11 @@
 //! All intersected edges of a band, in parallel over its leaves.
 
 use super::bisection;
-use super::hybrid::{GridEdge, NodeTriangle, Solver, TOLERANCE};
+use super::hybrid::{Direction, GridEdge, NodeTriangle, Root, Solver, TOLERANCE};
 use super::statistics::EdgeStatistics;
 use super::{Crossing, Crossings, EdgeNumbers};
 use crate::band::{LeafId, SignField};
+use crate::candidates::{CandidateLists, block_in_leaf};
 use crate::distance::SignedDistance;
 use crate::lattice::{Axis, Ijk, LEAF_SIZE, Lattice};
 use crate::run::{Cancelled, Phase, RunSettings};
@@ -47,6 +48,15 @@ impl NodeTriangles {
     }
 }
 
+/// What is known of the triangles that are near the edges.
+#[derive(Clone, Debug, Default)]
+pub struct NearTriangles {
+    /// The closest triangles of the band's nodes.
+    pub nodes: NodeTriangles,
+    /// All triangles that can be closest to the points of an edge; without, the hierarchy is asked.
+    pub lists: Option<CandidateLists>,
+}
+
 /// How the intersection of an edge is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum RootMethod {
@@ -87,11 +97,11 @@ pub fn solve(
     r: f64,
     signs: &SignField,
     numbers: EdgeNumbers,
-    triangles: &NodeTriangles,
+    near: &NearTriangles,
     run: &RunSettings,
 ) -> Result<(Crossings, EdgeStatistics), Cancelled> {
     let settings = EdgeSettings { lattice, r, method: RootMethod::Hybrid };
-    solve_by(distance, &settings, signs, numbers, triangles, run)
+    solve_by(distance, &settings, signs, numbers, near, run)
 }
 
 /// The same as [`solve`], by the method that the settings name.
@@ -103,7 +113,7 @@ pub fn solve_by(
     settings: &EdgeSettings,
     signs: &SignField,
     numbers: EdgeNumbers,
-    triangles: &NodeTriangles,
+    near: &NearTriangles,
     run: &RunSettings,
 ) -> Result<(Crossings, EdgeStatistics), Cancelled> {
     let EdgeSettings { lattice, r, method } = *settings;
@@ -119,7 +129,7 @@ pub fn solve_by(
         }
     }
     let phase = run.phase(Phase::Edges, tasks.len() as u64);
-    let leaf = LeafSolver { solver, method, lattice, signs, numbers: &numbers, triangles };
+    let leaf = LeafSolver { solver, method, lattice, signs, numbers: &numbers, near };
     let statistics = run.install(|| {
         tasks
             .into_par_iter()
@@ -141,51 +151,83 @@ struct LeafSolver<'a> {
     lattice: Lattice,
     signs: &'a SignField,
     numbers: &'a EdgeNumbers,
-    triangles: &'a NodeTriangles,
+    near: &'a NearTriangles,
 }
 
 impl LeafSolver<'_> {
     fn solve(&self, leaf: LeafId, samples: &mut [Crossing]) -> EdgeStatistics {
         let mut statistics = EdgeStatistics::default();
-        let mut guess = 0;
-        for ((axis, number), sample) in self.numbers.in_leaf(leaf).zip(samples) {
-            *sample = self.edge(leaf, axis, number, &mut guess, &mut statistics);
+        let (RootMethod::Hybrid, Some(lists)) = (self.method, &self.near.lists) else {
+            for ((axis, number), sample) in self.numbers.in_leaf(leaf).zip(samples) {
+                let edge = self.edge(leaf, axis, number);
+                let root = match self.method {
+                    RootMethod::Hybrid => self.solver.solve(&edge, &mut statistics),
+                    RootMethod::Bisection { tolerance } => {
+                        bisection::solve(&self.solver, &edge, tolerance, &mut statistics)
+                    }
+                };
+                *sample = edge.crossing(root);
+            }
+            return statistics;
+        };
+        // The edges by block, in the order of their numbers within it.
+        let mut edges: Vec<(u32, Axis, usize, &mut Crossing)> = self
+            .numbers
+            .in_leaf(leaf)
+            .zip(samples)
+            .map(|((axis, number), sample)| {
+                (block_in_leaf(Ijk::in_leaf(Ijk::default(), number)), axis, number, sample)
+            })
+            .collect();
+        edges.sort_by_key(|edge| edge.0);
+        let origin = self.signs.origin(leaf);
+        let unsolved = Root { t: 0.0, normal: DVec3::ZERO };
+        let mut together: Vec<GridEdge<'_>> = Vec::with_capacity(8);
+        for block in edges.chunk_by_mut(|a, b| a.0 == b.0) {
+            let near = lists.of_cell(Ijk::in_leaf(origin, block[0].2));
+            for edges in block.chunks_mut(8) {
+                together.clear();
+                together.extend(edges.iter().map(|&(_, axis, number, _)| GridEdge {
+                    candidates: near,
+                    ..self.edge(leaf, axis, number)
+                }));
+                let mut roots = [unsolved; 8];
+                match near {
+                    Some(near) => {
+                        self.solver.solve_together(&together, near, &mut statistics, &mut roots);
+                    }
+                    None => {
+                        for (edge, root) in together.iter().zip(&mut roots) {
+                            *root = self.solver.solve(edge, &mut statistics);
+                        }
+                    }
+                }
+                for ((edge, root), (.., sample)) in together.iter().zip(roots).zip(edges) {
+                    **sample = edge.crossing(root);
+                }
+            }
         }
         statistics
     }
 
-    fn edge(
-        &self,
-        leaf: LeafId,
-        axis: Axis,
-        number: usize,
-        guess: &mut u32,
-        statistics: &mut EdgeStatistics,
-    ) -> Crossing {
+    fn edge(&self, leaf: LeafId, axis: Axis, number: usize) -> GridEdge<'_> {
         let node = Ijk::in_leaf(Ijk::default(), number);
         let (next_leaf, next_number) =
             self.signs.locate(leaf, node.next(axis).0).expect("an intersected edge ends in the field");
-        let known = [self.triangles.get(leaf, number), self.triangles.get(next_leaf, next_number)];
-        if let Some(triangle) = known[0].or(known[1]) {
-            *guess = triangle;
-        }
-        let triangle = |known: Option<u32>| known.map_or(NodeTriangle::Guess(*guess), NodeTriangle::Known);
+        let nodes = &self.near.nodes;
+        let known = [nodes.get(leaf, number), nodes.get(next_leaf, next_number)];
+        // A triangle near one end is near the other.
+        let guess = known[0].or(known[1]).unwrap_or(0);
+        let triangle = |known: Option<u32>| known.map_or(NodeTriangle::Guess(guess), NodeTriangle::Known);
         let origin = self.signs.origin(leaf);
         let p = DVec3::from(self.lattice.world_from_index(origin + node));
         let q = DVec3::from(self.lattice.world_from_index((origin + node).next(axis)));
         let inside_first = self.signs.inside(leaf)[number >> 6] >> (number & 63) & 1 == 1;
-        let (edge, forward) = if inside_first {
-            (GridEdge { inside: p, outside: q, triangles: [triangle(known[0]), triangle(known[1])] }, true)
+        let (ends, triangles, direction) = if inside_first {
+            ([p, q], [triangle(known[0]), triangle(known[1])], Direction::Out)
         } else {
-            (GridEdge { inside: q, outside: p, triangles: [triangle(known[1]), triangle(known[0])] }, false)
+            ([q, p], [triangle(known[1]), triangle(known[0])], Direction::In)
         };
-        let root = match self.method {
-            RootMethod::Hybrid => self.solver.solve(&edge, statistics),
-            RootMethod::Bisection { tolerance } => {
-                bisection::solve(&self.solver, &edge, tolerance, statistics)
-            }
-        };
-        let t = if forward { root.t } else { 1.0 - root.t };
-        Crossing { t, normal: root.normal.as_vec3().to_array(), hint: *guess }
+        GridEdge { inside: ends[0], outside: ends[1], triangles, candidates: None, direction, hint: guess }
     }
 }

@@ -106,7 +106,7 @@ impl Filter<'_> {
     /// distance filter, from the nearer one of the two at distance abs(r), as the counts of the paper's
     /// BB + OT have it.
     #[inline]
-    fn clearance(&self, signed: f64) -> f64 {
+    pub fn clearance(&self, signed: f64) -> f64 {
         match self.settings.signed_distance {
             Switch::On => (signed - self.r).abs(),
             Switch::Off => (signed.abs() - self.r.abs()).abs(),
@@ -114,7 +114,7 @@ impl Filter<'_> {
     }
 
     /// l + delta of Remark 1: a block whose centre has abs(phi) above this holds no valid node.
-    fn reach(&self, block: Block) -> f64 {
+    pub fn reach(&self, block: Block) -> f64 {
         self.half_width + block.radius(self.lattice) + ROUNDING * self.lattice.voxel
     }
 }

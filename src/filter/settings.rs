@@ -49,6 +49,8 @@ pub struct FilterSettings {
     pub signed_distance: Switch,
     /// The octree filter.
     pub octree: Switch,
+    /// Candidate lists within leaves, instead of a query for each block and node. They need the octree filter.
+    pub candidates: Switch,
 }
 
 /// A box side out of range.

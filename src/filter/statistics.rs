@@ -20,6 +20,8 @@ pub struct FilterStatistics {
     pub node_queries: u64,
     /// Nodes with abs(phi) <= h.
     pub valid_nodes: u64,
+    /// Triangles in all candidate lists of blocks of 8^3, 4^3 and 2^3 nodes.
+    pub lists: [u64; 3],
 }
 
 impl FilterStatistics {
@@ -41,5 +43,8 @@ impl AddAssign for FilterStatistics {
         self.octree_queries_invalid += o.octree_queries_invalid;
         self.node_queries += o.node_queries;
         self.valid_nodes += o.valid_nodes;
+        for (own, other) in self.lists.iter_mut().zip(o.lists) {
+            *own += other;
+        }
     }
 }

@@ -4,7 +4,9 @@
 //! triangle, and each edge region by its two end planes. No barycentric division takes part in the
 //! decision, so needles keep their accuracy.
 
+use super::lanes::{F64s, P64s};
 use glam::DVec3;
+use pulp::Simd;
 
 /// A corner or an edge of a triangle: 0, 1 or 2. Edge k runs from corner k to corner k + 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -50,6 +52,79 @@ pub struct Triangle {
     pub normal: DVec3,
     /// Bit k: edge k runs from its second corner to its first, for canonical arithmetic (see `segment`).
     flipped: u8,
+}
+
+/// A triangle for the distances of many points.
+#[derive(Clone, Copy, Debug)]
+pub struct TriangleInLanes<S: Simd> {
+    sides: [SideInLanes<S>; 3],
+    corner: P64s<S>,
+    normal: P64s<S>,
+}
+
+/// An edge of a triangle.
+#[derive(Clone, Copy, Debug)]
+struct SideInLanes<S: Simd> {
+    corner: P64s<S>,
+    /// In the triangle's plane, perpendicular to the edge.
+    outward: P64s<S>,
+    /// The end with the lower vertex number.
+    start: P64s<S>,
+    /// The other one.
+    end: P64s<S>,
+}
+
+impl<S: Simd> TriangleInLanes<S> {
+    /// Squared distances from the points in `p`, each the same value, bit for bit, as
+    /// [`Triangle::distance_squared`] gives.
+    #[inline(always)]
+    pub fn distances_squared(&self, simd: S, p: P64s<S>) -> F64s<S> {
+        let zero = F64s::splat(simd, 0.0);
+        let far = F64s::splat(simd, f64::INFINITY);
+        let [first, second, third] = &self.sides;
+        // Written out: closures would not be compiled for the kernel's instructions.
+        let outside = [first.outside(p), second.outside(p), third.outside(p)];
+        // Negative inside all edges.
+        let outermost = outside[0].max(outside[1]).max(outside[2]);
+        let inside = outermost.less(zero);
+        let height = (p - self.corner).dot(self.normal);
+        let mut nearest = far;
+        for (side, outside) in [(first, outside[0]), (second, outside[1]), (third, outside[2])] {
+            let beyond = zero.at_most(outside);
+            if beyond.any() {
+                nearest = nearest.min(beyond.select(side.distances_squared(simd, p), far));
+            }
+        }
+        inside.select(height * height, nearest)
+    }
+}
+
+impl<S: Simd> SideInLanes<S> {
+    #[inline(always)]
+    fn new(a: P64s<S>, b: P64s<S>, normal: P64s<S>, is_flipped: bool) -> SideInLanes<S> {
+        let (start, end) = if is_flipped { (b, a) } else { (a, b) };
+        SideInLanes { corner: a, outward: (b - a).cross(normal), start, end }
+    }
+
+    /// See [`Triangle::outside`].
+    #[inline(always)]
+    fn outside(&self, p: P64s<S>) -> F64s<S> {
+        (p - self.corner).dot(self.outward)
+    }
+
+    /// As `segment` computes them for one point.
+    #[inline(always)]
+    fn distances_squared(&self, simd: S, p: P64s<S>) -> F64s<S> {
+        let edge = self.end - self.start;
+        let length_squared = edge.dot(edge);
+        let along = (p - self.start).dot(edge);
+        let inverse = F64s::splat(simd, 1.0) / length_squared;
+        let between = self.start + edge.times(along * inverse);
+        let point = length_squared.at_most(along).select_points(self.end, between);
+        let point = along.at_most(F64s::splat(simd, 0.0)).select_points(self.start, point);
+        let from = p - point;
+        from.dot(from)
+    }
 }
 
 /// Eight points as structure of arrays.
@@ -151,6 +226,24 @@ impl Triangle {
             out[i] = if outermost[i] < 0.0 { height[i] * height[i] } else { nearest[i] };
         }
         out
+    }
+
+    /// The triangle with what does not depend on the point computed ahead.
+    #[inline(always)]
+    pub fn in_lanes<S: Simd>(&self, simd: S) -> TriangleInLanes<S> {
+        let a = P64s::splat(simd, self.corners[0].to_array());
+        let b = P64s::splat(simd, self.corners[1].to_array());
+        let c = P64s::splat(simd, self.corners[2].to_array());
+        let normal = P64s::splat(simd, self.normal.to_array());
+        TriangleInLanes {
+            sides: [
+                SideInLanes::new(a, b, normal, self.flipped & 1 == 1),
+                SideInLanes::new(b, c, normal, self.flipped >> 1 & 1 == 1),
+                SideInLanes::new(c, a, normal, self.flipped >> 2 & 1 == 1),
+            ],
+            corner: a,
+            normal,
+        }
     }
 
     /// Squared distances of eight points from an edge, as `segment` computes them for one.
@@ -328,6 +421,25 @@ mod tests {
             for (p, d) in points.into_iter().zip(together) {
                 assert_eq!(d.to_bits(), triangle.distance_squared(p).to_bits(), "{p} {corners:?}");
             }
+            let lanes = [points.map(|p| p.x), points.map(|p| p.y), points.map(|p| p.z)];
+            let here = crate::geom::lanes::in_lanes(InLanes(&triangle, &lanes));
+            let anywhere = pulp::WithSimd::with_simd(InLanes(&triangle, &lanes), pulp::Scalar);
+            assert_eq!(here.map(f64::to_bits), together.map(f64::to_bits), "{corners:?}");
+            assert_eq!(here.map(f64::to_bits), anywhere.map(f64::to_bits), "{corners:?}");
+        }
+    }
+
+    struct InLanes<'a>(&'a Triangle, &'a [[f64; 8]; 3]);
+
+    impl pulp::WithSimd for InLanes<'_> {
+        type Output = [f64; 8];
+        fn with_simd<S: Simd>(self, simd: S) -> [f64; 8] {
+            let mut out = [0.0; 8];
+            for vector in 0..8 / F64s::<S>::COUNT {
+                let p = P64s::load(simd, self.1, vector);
+                self.0.in_lanes(simd).distances_squared(simd, p).store(&mut out, vector);
+            }
+            out
         }
     }
 

@@ -23,7 +23,7 @@ pub use unsuitable::{EmptyResult, InputError, MemoryError};
 
 use crate::contour::{ContourSettings, contour};
 use crate::distance::SignedDistance;
-use crate::edge::{EdgeNumbers, solve};
+use crate::edge::{EdgeNumbers, NearTriangles, solve};
 use crate::error::Error;
 use crate::mesh::{Topology, TriMesh};
 use crate::run::{Phase, RunSettings};
@@ -70,17 +70,18 @@ pub fn offset(mesh: &TriMesh, settings: &OffsetSettings, run: &RunSettings) -> R
     times.hierarchy = started.elapsed().as_secs_f64();
 
     let started = Instant::now();
-    let (band, filter) = narrow_band::build(&distance, &band_settings, run)?;
+    let (band, lists, filter) = narrow_band::build(&distance, &band_settings, run)?;
     times.band = started.elapsed().as_secs_f64();
 
     let started = Instant::now();
-    let (signs, triangles) = narrow_band::read_back(&band)?;
-    let numbers = EdgeNumbers::new(&signs)?;
+    let (signs, triangles) = narrow_band::read_back(&band, run)?;
+    let numbers = run.install(|| EdgeNumbers::new(&signs))?;
     if numbers.is_empty() {
         return Err(EmptyResult::explain(&distance, &band_settings).into());
     }
-    let (crossings, edges) = solve(&distance, lattice, r, &signs, numbers, &triangles, run)?;
-    drop(triangles);
+    let near = NearTriangles { nodes: triangles, lists: Some(lists) };
+    let (crossings, edges) = solve(&distance, lattice, r, &signs, numbers, &near, run)?;
+    let NearTriangles { lists, .. } = near;
     times.edges = started.elapsed().as_secs_f64();
 
     let started = Instant::now();
@@ -90,7 +91,8 @@ pub fn offset(mesh: &TriMesh, settings: &OffsetSettings, run: &RunSettings) -> R
     });
     let contour_settings =
         ContourSettings { precision: settings.precision, tolerance, ..ContourSettings::default() };
-    let surface = OffsetSurface { distance: &distance, r, vanishing: 1e-4 * lattice.voxel };
+    let surface =
+        OffsetSurface { distance: &distance, r, lists: lists.as_ref(), vanishing: 1e-4 * lattice.voxel };
     let (mesh, contour) = contour(&signs, &crossings, lattice, Some(&surface), &contour_settings, run)?;
     times.contour = started.elapsed().as_secs_f64();
 

@@ -1,5 +1,6 @@
 //! The offset surface as the contour asks for it.
 
+use crate::candidates::CandidateLists;
 use crate::contour::{Creases, Surface};
 use crate::distance::SignedDistance;
 use glam::DVec3;
@@ -10,6 +11,8 @@ pub(super) struct OffsetSurface<'a> {
     pub distance: &'a SignedDistance<'a>,
     /// Signed distance in model units.
     pub r: f64,
+    /// The triangles near the surface.
+    pub lists: Option<&'a CandidateLists>,
     /// Distances from the mesh up to this, in model units, give no direction.
     pub vanishing: f64,
 }
@@ -30,8 +33,12 @@ impl Surface for OffsetSurface<'_> {
     }
 
     fn at(&self, p: [f64; 3], hint: &mut u32) -> (f64, [f64; 3]) {
+        let near = self.lists.and_then(|lists| lists.at(p));
         let p = DVec3::from(p);
-        let sample = self.distance.at(p, *hint);
+        let sample = match near {
+            Some(near) => self.distance.among(p, near),
+            None => self.distance.at(p, *hint),
+        };
         *hint = sample.triangle;
         (sample.distance - self.r, self.distance.gradient(p, &sample, self.vanishing).to_array())
     }

@@ -73,12 +73,12 @@ fn crossings_lie_on_the_offset_surface_by_brute_force() {
     let distance = SignedDistance::new(&mesh, &topology);
     for r in [0.11, -0.07, 0.0] {
         let band_settings = settings(r, 0.08).resolve(&mesh).unwrap();
-        let (band, _) = narrow_band::build(&distance, &band_settings, &run(2)).unwrap();
-        let (signs, triangles) = narrow_band::read_back(&band).unwrap();
+        let (band, lists, _) = narrow_band::build(&distance, &band_settings, &run(2)).unwrap();
+        let (signs, nodes) = narrow_band::read_back(&band, &run(2)).unwrap();
+        let near = NearTriangles { nodes, lists: Some(lists) };
         let numbers = EdgeNumbers::new(&signs).unwrap();
         let lattice = band_settings.lattice;
-        let (crossings, statistics) =
-            solve(&distance, lattice, r, &signs, numbers, &triangles, &run(2)).unwrap();
+        let (crossings, statistics) = solve(&distance, lattice, r, &signs, numbers, &near, &run(2)).unwrap();
         let solved: u64 = statistics.by_subdivision.iter().sum::<u64>() + statistics.bisected;
         assert_eq!((statistics.intersected, statistics.sign_jumps), (solved, 0));
         let mut checked = 0;
@@ -103,18 +103,42 @@ fn crossings_lie_on_the_offset_surface_by_brute_force() {
 }
 
 #[test]
+fn lists_give_the_roots_of_the_hierarchy() {
+    for (mesh, voxel) in [(shapes::carved_cube(6), 0.05), (shapes::carved_cube(40), 0.03)] {
+        let topology = Topology::new(&mesh);
+        let distance = SignedDistance::new(&mesh, &topology);
+        for r in [0.11, -0.07, 0.0] {
+            let band_settings = settings(r, voxel).resolve(&mesh).unwrap();
+            let (band, lists, _) = narrow_band::build(&distance, &band_settings, &run(2)).unwrap();
+            let (signs, nodes) = narrow_band::read_back(&band, &run(2)).unwrap();
+            let numbers = EdgeNumbers::new(&signs).unwrap();
+            let solve = |lists| {
+                let near = NearTriangles { nodes: nodes.clone(), lists };
+                solve(&distance, band_settings.lattice, r, &signs, numbers.clone(), &near, &run(2)).unwrap()
+            };
+            let (by_lists, counts) = solve(Some(lists));
+            let (by_queries, expected) = solve(None);
+            assert!(by_lists.samples.len() > 1000);
+            assert_eq!(by_lists.samples, by_queries.samples, "{r}");
+            assert_eq!(counts, expected);
+        }
+    }
+}
+
+#[test]
 fn plain_bisection_finds_the_roots_of_the_hybrid_method() {
     let mesh = shapes::carved_cube(6);
     let topology = Topology::new(&mesh);
     let distance = SignedDistance::new(&mesh, &topology);
     for r in [0.11, -0.07] {
         let band_settings = settings(r, 0.05).resolve(&mesh).unwrap();
-        let (band, _) = narrow_band::build(&distance, &band_settings, &run(2)).unwrap();
-        let (signs, triangles) = narrow_band::read_back(&band).unwrap();
+        let (band, lists, _) = narrow_band::build(&distance, &band_settings, &run(2)).unwrap();
+        let (signs, nodes) = narrow_band::read_back(&band, &run(2)).unwrap();
+        let near = NearTriangles { nodes, lists: Some(lists) };
         let numbers = EdgeNumbers::new(&signs).unwrap();
         let solve = |method| {
             let settings = EdgeSettings { lattice: band_settings.lattice, r, method };
-            solve_by(&distance, &settings, &signs, numbers.clone(), &triangles, &run(2)).unwrap()
+            solve_by(&distance, &settings, &signs, numbers.clone(), &near, &run(2)).unwrap()
         };
         let (hybrid, with_closed_forms) = solve(RootMethod::Hybrid);
         let (plain, halved) = solve(RootMethod::PLAIN_BISECTION);

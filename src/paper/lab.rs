@@ -4,7 +4,7 @@ use super::PaperSettings;
 use super::models::{Model, PaperModel};
 use crate::band::{BandSettings, SignField};
 use crate::distance::SignedDistance;
-use crate::edge::{EdgeNumbers, NodeTriangles};
+use crate::edge::{EdgeNumbers, NearTriangles};
 use crate::error::Error;
 use crate::offset::{Length, OffsetResult, OffsetSettings, VoxelSize, narrow_band, offset};
 use crate::run::RunSettings;
@@ -20,7 +20,7 @@ pub(super) struct Field {
     pub settings: BandSettings,
     pub signs: SignField,
     pub numbers: EdgeNumbers,
-    pub triangles: NodeTriangles,
+    pub near: NearTriangles,
 }
 
 impl Lab<'_> {
@@ -86,10 +86,11 @@ impl Lab<'_> {
         voxel: VoxelSize,
     ) -> Result<Option<Field>, Error> {
         let settings = self.offset_settings(model, fraction, voxel).resolve(&model.mesh)?;
-        let (band, _) = narrow_band::build(distance, &settings, self.run)?;
-        let (signs, triangles) = narrow_band::read_back(&band)?;
-        let numbers = EdgeNumbers::new(&signs)?;
-        Ok((!numbers.is_empty()).then_some(Field { settings, signs, numbers, triangles }))
+        let (band, lists, _) = narrow_band::build(distance, &settings, self.run)?;
+        let (signs, nodes) = narrow_band::read_back(&band, self.run)?;
+        let near = NearTriangles { nodes, lists: Some(lists) };
+        let numbers = self.run.install(|| EdgeNumbers::new(&signs))?;
+        Ok((!numbers.is_empty()).then_some(Field { settings, signs, numbers, near }))
     }
 
     /// How the run was done, for the foot of a table.

@@ -125,8 +125,7 @@ fn here(
         let settings = EdgeSettings { lattice: field.settings.lattice, r: field.settings.r, method };
         let numbers = field.numbers.clone();
         let started = Instant::now();
-        let (_, statistics) =
-            solve_by(distance, &settings, &field.signs, numbers, &field.triangles, lab.run)?;
+        let (_, statistics) = solve_by(distance, &settings, &field.signs, numbers, &field.near, lab.run)?;
         Ok((statistics, started.elapsed().as_secs_f64()))
     };
     let (hybrid, hybrid_seconds) = solve(RootMethod::Hybrid)?;

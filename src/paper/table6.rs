@@ -63,7 +63,7 @@ pub(super) fn measure(lab: &Lab) -> Result<Report, Error> {
             };
             let (lattice, r) = (field.settings.lattice, field.settings.r);
             let (crossings, _) =
-                solve(&distance, lattice, r, &field.signs, field.numbers, &field.triangles, lab.run)?;
+                solve(&distance, lattice, r, &field.signs, field.numbers, &field.near, lab.run)?;
             let settings = ContourSettings::default();
             let methods = [CutMethod::PolygonEdges, CutMethod::ConvexConcave];
             let [ju, cc] = cut_times(&field.signs, &crossings, lattice, &settings, methods, lab.run)?;

@@ -9,6 +9,7 @@
 //! starts from.
 
 mod build;
+mod collect;
 mod node;
 mod query;
 #[cfg(test)]

@@ -18,7 +18,7 @@ pub struct Hit {
 impl Hit {
     /// Whether this hit comes before `other`: nearer, or as near with the lower number.
     #[inline(always)]
-    fn before(&self, other: &Hit) -> bool {
+    pub(super) fn before(&self, other: &Hit) -> bool {
         self.distance_squared < other.distance_squared
             || (self.distance_squared == other.distance_squared && self.triangle < other.triangle)
     }
@@ -59,7 +59,7 @@ impl Ssvh {
 
     /// Rounding of a bound for points whose coordinates relative to the centre are at most `sizes`.
     #[inline(always)]
-    fn slack(&self, sizes: DVec3) -> f64 {
+    pub(super) fn slack(&self, sizes: DVec3) -> f64 {
         SLACK * (sizes.max_element() + self.extent)
     }
 }
@@ -160,21 +160,21 @@ fn improve_eight(tree: &Ssvh, points: &[DVec3; 8], guess: u32) -> [Hit; 8] {
 }
 
 /// The nodes that wait for their turn, nearest siblings on top.
-struct Stack {
+pub(super) struct Stack {
     entries: [(f32, u32); STACK],
-    waiting: usize,
+    pub(super) waiting: usize,
 }
 
 impl Stack {
     /// The stack with the root on it.
     #[inline(always)]
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Stack { entries: [(0.0, 0); STACK], waiting: 1 }
     }
 
     /// The next node whose volume is within `limit`.
     #[inline(always)]
-    fn pop<'t>(&mut self, tree: &'t Ssvh, limit: f32) -> Option<&'t Node> {
+    pub(super) fn pop<'t>(&mut self, tree: &'t Ssvh, limit: f32) -> Option<&'t Node> {
         while self.waiting > 0 {
             self.waiting -= 1;
             let (bound, number) = self.entries[self.waiting];
@@ -187,7 +187,7 @@ impl Stack {
 
     /// Puts a node among its siblings, which begin at `first`.
     #[inline(always)]
-    fn push(&mut self, first: usize, distance: f32, number: u32) {
+    pub(super) fn push(&mut self, first: usize, distance: f32, number: u32) {
         let mut at = self.waiting;
         while at > first && self.entries[at - 1].0 < distance {
             self.entries[at] = self.entries[at - 1];

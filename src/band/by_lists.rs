@@ -1,0 +1,110 @@
+//! A leaf by candidate lists: one walk of the hierarchy for all of it.
+
+use super::LeafBatch;
+use super::build::Worker;
+use super::leaf::{Fate, Leaf};
+use crate::candidates::{BlockLists, Extent, Narrowing};
+use crate::filter::{Block, FilterStatistics};
+use crate::lattice::{Ijk, LEAF_DIM};
+use glam::DVec3;
+
+/// Where the centre of a leaf's nodes is, along each axis, in nodes.
+const CENTRE: f32 = 0.5 * (LEAF_DIM - 1) as f32;
+
+/// What a leaf is made with.
+struct Work<'a> {
+    narrowing: &'a mut Narrowing,
+    lists: &'a mut BlockLists,
+    statistics: &'a mut FilterStatistics,
+    leaf: Leaf,
+}
+
+impl Worker<'_> {
+    /// Evaluates the leaf at `origin`, whose centre is at the signed distance `distance` with the closest triangle
+    /// `triangle`, and appends it with the lists of its blocks.
+    pub(super) fn leaf_by_lists(
+        &self,
+        origin: Ijk,
+        triangle: u32,
+        distance: f64,
+        narrowing: &mut Narrowing,
+        batch: &mut LeafBatch,
+        statistics: &mut FilterStatistics,
+    ) {
+        let block = Block { origin, side: LEAF_DIM };
+        let ssvh = self.filter.distance.ssvh();
+        let q = ssvh.triangle(triangle).closest(block.centre(self.filter.lattice)).point;
+        narrowing.start(ssvh, self.filter.lattice, block, q);
+        statistics.lists[0] += narrowing.count(0) as u64;
+        batch.lists.begin_leaf();
+        let mut work = Work { narrowing, lists: &mut batch.lists, statistics, leaf: Leaf::new() };
+        self.halves(0, block, self.side_around(block, distance), &mut work);
+        let leaf = work.leaf;
+        if leaf.finish(origin, batch) == Fate::Dropped {
+            batch.lists.drop_leaf();
+        }
+    }
+
+    /// Applies the octree filter to the eight halves of a block whose list has the given depth, and goes on with those
+    /// that it keeps. `side` is the sign of the distance in all of the block, where it is one.
+    fn halves(&self, depth: usize, block: Block, side: Option<f64>, work: &mut Work<'_>) {
+        let lattice = self.filter.lattice;
+        let halves = block.children();
+        let middle = 0.5 * (halves[0].side - 1) as f32;
+        let mut centres = [[0.0; 8]; 3];
+        for (n, half) in halves.iter().enumerate() {
+            for (centre, node) in centres.iter_mut().zip(half.origin.0) {
+                centre[n] = (node & (LEAF_DIM - 1)) as f32 + middle - CENTRE;
+            }
+        }
+        work.narrowing.measure(depth, &centres);
+        // Where signs differ, they are those of the exact closest triangles.
+        let exact = side.is_none().then(|| {
+            let points = halves.map(|half| half.centre(lattice));
+            let ssvh = self.filter.distance.ssvh();
+            let hits = ssvh.closest_of_to_eight(work.narrowing.list(depth), &points, 8);
+            let signed = |n: usize| self.filter.distance.from_triangle(points[n], hits[n].triangle).distance;
+            std::array::from_fn::<f64, 8, _>(signed)
+        });
+        for (n, half) in halves.into_iter().enumerate() {
+            let nearest = work.narrowing.nearest(depth, n);
+            let [distance, error] = [nearest.distance, nearest.error].map(|x| lattice.voxel * f64::from(x));
+            let (signed, error) = match (&exact, side) {
+                (Some(signed), _) => (signed[n], 0.0),
+                (None, Some(side)) => (side * distance, error),
+                (None, None) => unreachable!("one of them is known"),
+            };
+            let phi = signed - self.filter.r;
+            if self.filter.clearance(signed) > self.filter.reach(half) + error {
+                work.statistics.octree_queries_invalid += 1;
+                work.leaf.fill(half, self.settings.background().copysign(phi as f32));
+                continue;
+            }
+            work.statistics.octree_queries_valid += 1;
+            let side = side.or_else(|| self.side_around(half, signed));
+            if half.side > 2 {
+                work.narrowing.narrow(depth, n, half.side, Extent::Cells);
+                work.statistics.lists[depth + 1] += work.narrowing.count(depth + 1) as u64;
+                self.halves(depth + 1, half, side, work);
+                continue;
+            }
+            work.narrowing.narrow(depth, n, half.side, Extent::Nodes);
+            work.statistics.lists[depth + 1] += work.narrowing.count(depth + 1) as u64;
+            let valid = self.nodes_by_list(depth + 1, half, side, work);
+            // An edge that the surface crosses has valid ends.
+            if valid > 0 {
+                work.narrowing.narrow(depth, n, half.side, Extent::Cells);
+                work.lists.push(half.origin, work.narrowing.list(depth + 1));
+            }
+        }
+    }
+
+    /// Evaluates the eight nodes of a block of side 2, and returns how many of them are valid.
+    fn nodes_by_list(&self, depth: usize, block: Block, side: Option<f64>, work: &mut Work<'_>) -> u64 {
+        let nodes = block.children().map(|b| b.origin);
+        let points = nodes.map(|node| DVec3::from(self.filter.lattice.world_from_index(node)));
+        let ssvh = self.filter.distance.ssvh();
+        let hits = ssvh.closest_of_to_eight(work.narrowing.list(depth), &points, 8);
+        self.set_nodes(&nodes, &points, &hits, side, &mut work.leaf, work.statistics)
+    }
+}

@@ -1,0 +1,228 @@
+//! The lists of one leaf, from the hierarchy down to blocks of 2^3 nodes.
+
+use super::flat::{FlatTriangle, ROUNDING};
+use crate::filter::Block;
+use crate::geom::lanes::{F32s, P32s, in_lanes};
+use crate::lattice::Lattice;
+use crate::ssvh::Ssvh;
+use glam::DVec3;
+use pulp::{Simd, WithSimd};
+
+/// Eight points as structure of arrays.
+pub type EightPoints = [[f32; 8]; 3];
+
+/// Lists: of the leaf, of its halves, of their halves.
+const LEVELS: usize = 3;
+
+/// Half the diagonal of the largest block that is narrowed to, 4^3 nodes with the cells at them, seen from the centre of
+/// its nodes, in voxels.
+const REACH: f32 = 2.5 * 1.732_051;
+
+/// The working memory for the lists of one leaf after the other.
+#[derive(Debug, Default)]
+pub struct Narrowing {
+    /// Positions in the hierarchy of the leaf's candidates.
+    positions: Vec<u32>,
+    /// The same triangles, seen from the leaf's centre.
+    flats: Vec<FlatTriangle>,
+    /// Rounding of distances, in voxels.
+    slack: f32,
+    levels: [Level; LEVELS],
+    /// The list that was asked for last.
+    named: Vec<u32>,
+}
+
+/// A block's candidates and what its eight halves' centres say of them.
+#[derive(Debug, Default)]
+struct Level {
+    /// Numbers in `flats`.
+    list: Vec<u32>,
+    bounds: Vec<Bound>,
+    nearest: [Nearest; 8],
+}
+
+/// How near a triangle comes to the points around eight centres: at c + x at least `low` + `direction` . x, since it lies
+/// beyond the plane through its closest point. Distances in voxels.
+#[derive(Clone, Copy, Debug, Default)]
+struct Bound {
+    low: [f32; 8],
+    direction: EightPoints,
+}
+
+/// The nearest candidate to a centre.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Nearest {
+    /// The distance from it in voxels, but for `error`.
+    pub distance: f32,
+    /// Rounding of the distance.
+    pub error: f32,
+    /// From its closest point to the centre.
+    from: [f32; 3],
+}
+
+impl Narrowing {
+    /// Collects the candidates of a leaf from the hierarchy. `q` is a point of the mesh near the leaf.
+    pub fn start(&mut self, ssvh: &Ssvh, lattice: Lattice, leaf: Block, q: DVec3) {
+        let centre = leaf.centre(lattice);
+        let [x, y, z] = corners(leaf.side, Extent::Cells).map(|lane| lane.map(f64::from));
+        let corners = std::array::from_fn(|n| centre + lattice.voxel * DVec3::new(x[n], y[n], z[n]));
+        let limits = corners.map(|c: DVec3| (c - q).length());
+        self.positions.clear();
+        ssvh.collect(&corners, &limits, &mut self.positions);
+        let scale = 1.0 / lattice.voxel;
+        self.flats.clear();
+        self.flats
+            .extend(self.positions.iter().map(|&p| FlatTriangle::new(ssvh.triangle_at(p), centre, scale)));
+        let size = self.flats.iter().fold(leaf.side as f32, |size, t| size.max(t.size()));
+        self.slack = ROUNDING * size;
+        let list = &mut self.levels[0].list;
+        list.clear();
+        list.extend(0..self.positions.len() as u32);
+    }
+
+    /// Measures the list of `depth` from the centres of the eight halves of its block, given relative to the leaf's
+    /// centre in voxels.
+    pub fn measure(&mut self, depth: usize, centres: &EightPoints) {
+        let Level { list, bounds, nearest } = &mut self.levels[depth];
+        let measure = Measure { flats: &self.flats, list, centres, slack: self.slack, bounds };
+        *nearest = in_lanes(measure);
+    }
+
+    /// What [`measure`](Self::measure) found nearest to the centre of half number `n`.
+    pub fn nearest(&self, depth: usize, n: usize) -> Nearest {
+        self.levels[depth].nearest[n]
+    }
+
+    /// Narrows the measured list of `depth` to half number `n`, which has `side` nodes along an axis: the list of
+    /// `depth` + 1, for all points of its `extent`.
+    pub fn narrow(&mut self, depth: usize, n: usize, side: i32, extent: Extent) {
+        let [.., parent, child] = &mut self.levels[..depth + 2] else { unreachable!("two levels") };
+        child.list.clear();
+        let corners = corners(side, extent);
+        let kept = &mut child.list;
+        in_lanes(Narrow { parent, n, corners: &corners, slack: self.slack, kept });
+    }
+
+    /// The number of triangles in the list of `depth`.
+    pub fn count(&self, depth: usize) -> usize {
+        self.levels[depth].list.len()
+    }
+
+    /// Positions in the hierarchy of the list of `depth`.
+    pub fn list(&mut self, depth: usize) -> &[u32] {
+        let list = self.levels[depth].list.iter();
+        self.named.clear();
+        self.named.extend(list.map(|&n| self.positions[n as usize]));
+        &self.named
+    }
+}
+
+/// The part of space that a list is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// The nodes of a block, and what is between them.
+    Nodes,
+    /// The cells whose lowest nodes are those of the block: one voxel more along each axis.
+    Cells,
+}
+
+/// The corners of the box of `side` nodes along an axis, or of the cells at them, in voxels from the centre of the nodes.
+fn corners(side: i32, extent: Extent) -> EightPoints {
+    let high = match extent {
+        Extent::Nodes => side - 1,
+        Extent::Cells => side + 1,
+    };
+    let ends = [0.5 * (1 - side) as f32, 0.5 * high as f32];
+    std::array::from_fn(|axis| std::array::from_fn(|n| ends[n >> (2 - axis) & 1]))
+}
+
+/// Bounds of a list's triangles from eight centres, and the nearest ones.
+struct Measure<'a> {
+    flats: &'a [FlatTriangle],
+    list: &'a [u32],
+    centres: &'a EightPoints,
+    slack: f32,
+    bounds: &'a mut Vec<Bound>,
+}
+
+impl WithSimd for Measure<'_> {
+    type Output = [Nearest; 8];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> [Nearest; 8] {
+        let Measure { flats, list, centres, slack, bounds } = self;
+        bounds.clear();
+        bounds.resize(list.len(), Bound::default());
+        let (mut least, mut from) = ([0.0; 8], [[0.0; 8]; 3]);
+        let slacks = F32s::splat(simd, slack);
+        let unknown = F32s::splat(simd, slack * REACH);
+        for vector in 0..8 / F32s::<S>::COUNT {
+            let p = P32s::load(simd, centres, vector);
+            let mut nearest = F32s::splat(simd, f32::INFINITY);
+            let mut way = P32s::splat(simd, [0.0; 3]);
+            for (bound, &n) in bounds.iter_mut().zip(list) {
+                let (distance, direction) = flats[n as usize].distances(simd, p);
+                let nearer = distance.less(nearest);
+                nearest = nearer.select(distance, nearest);
+                way = nearer.select_points(direction, way);
+                // The nearer the triangle, the less its direction is known.
+                (distance - slacks - unknown / distance).store(&mut bound.low, vector);
+                direction.store(&mut bound.direction, vector);
+            }
+            nearest.store(&mut least, vector);
+            way.times(nearest).store(&mut from, vector);
+        }
+        std::array::from_fn(|i| Nearest {
+            distance: least[i],
+            error: slack,
+            from: [from[0][i], from[1][i], from[2][i]],
+        })
+    }
+}
+
+/// What of a measured list matters to half number `n` with the given corners.
+struct Narrow<'a> {
+    parent: &'a Level,
+    n: usize,
+    corners: &'a EightPoints,
+    slack: f32,
+    kept: &'a mut Vec<u32>,
+}
+
+impl WithSimd for Narrow<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Narrow { parent, n, corners, slack, kept } = self;
+        // How far the corners are from the point that is nearest to the centre.
+        let from = P32s::splat(simd, parent.nearest[n].from);
+        let (mut limits, mut farthest, mut radius) = ([0.0; 8], 0.0f32, 0.0f32);
+        for vector in 0..8 / F32s::<S>::COUNT {
+            let corners = P32s::load(simd, corners, vector);
+            let from = corners + from;
+            (from.dot(from).sqrt() + F32s::splat(simd, slack)).store(&mut limits, vector);
+        }
+        for (i, limit) in limits.iter().enumerate() {
+            farthest = farthest.max(*limit);
+            let [x, y, z] = [corners[0][i], corners[1][i], corners[2][i]];
+            radius = radius.max((x * x + y * y + z * z).sqrt());
+        }
+        for (bound, &candidate) in parent.bounds.iter().zip(&parent.list) {
+            let low = bound.low[n];
+            if low > farthest + radius {
+                continue;
+            }
+            let direction = [bound.direction[0][n], bound.direction[1][n], bound.direction[2][n]];
+            let (low, direction) = (F32s::splat(simd, low), P32s::splat(simd, direction));
+            let mut matters = false;
+            for vector in 0..8 / F32s::<S>::COUNT {
+                let at_corners = low + direction.dot(P32s::load(simd, corners, vector));
+                matters |= at_corners.less(F32s::load(simd, &limits, vector)).any();
+            }
+            if matters {
+                kept.push(candidate);
+            }
+        }
+    }
+}

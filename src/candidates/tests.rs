@@ -1,0 +1,167 @@
+use super::*;
+use crate::filter::Block;
+use crate::lattice::{Ijk, Lattice};
+use crate::mesh::TriMesh;
+use crate::mesh::shapes;
+use crate::ssvh::Ssvh;
+use glam::DVec3;
+use proptest::prelude::*;
+
+/// A mesh whose triangles have nothing to do with one another, among them needles and one that is larger than all else.
+fn soup(corners: &[[[f64; 3]; 3]]) -> TriMesh {
+    let vertices: Vec<[f64; 3]> = corners.iter().flatten().copied().collect();
+    let triangles = (0..corners.len() as u32).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect();
+    TriMesh { vertices, triangles }
+}
+
+/// Narrows the lists of the leaf at `origin` and compares each with the hierarchy, at random points of its blocks. Returns
+/// the numbers of triangles in the lists of the three depths.
+fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]) -> [usize; 3] {
+    let ssvh = Ssvh::new(mesh);
+    let mut counts = [0; 3];
+    let mut check = |narrowing: &mut Narrowing, depth: usize, block: Block, extent: Extent| {
+        counts[depth] += narrowing.count(depth);
+        let high = match extent {
+            Extent::Nodes => block.side - 1,
+            Extent::Cells => block.side,
+        };
+        let list = narrowing.list(depth).to_vec();
+        for share in shares {
+            let node = DVec3::from(block.origin.0.map(f64::from));
+            let p = lattice.voxel * (node + f64::from(high) * DVec3::from(*share));
+            assert_eq!(ssvh.closest_of(&list, p), ssvh.closest(p), "{block:?} {p}");
+            let eight = ssvh.closest_of_to_eight(&list, &[p; 8], 8);
+            assert!(eight.iter().all(|hit| *hit == ssvh.closest(p)));
+        }
+    };
+    let leaf = Block { origin, side: 8 };
+    let q = ssvh.triangle(ssvh.closest(leaf.centre(lattice)).triangle).closest(leaf.centre(lattice)).point;
+    let mut narrowing = Narrowing::default();
+    narrowing.start(&ssvh, lattice, leaf, q);
+    check(&mut narrowing, 0, leaf, Extent::Cells);
+    let centres = |block: Block| {
+        let halves = block.children();
+        let side = halves[0].side;
+        let centre = |half: Block, axis: usize| {
+            (half.origin.0[axis] - origin.0[axis]) as f32 + 0.5 * (side - 1) as f32 - 3.5
+        };
+        std::array::from_fn(|axis| halves.map(|half| centre(half, axis)))
+    };
+    narrowing.measure(0, &centres(leaf));
+    for (n, half) in leaf.children().into_iter().enumerate() {
+        narrowing.narrow(0, n, 4, Extent::Cells);
+        check(&mut narrowing, 1, half, Extent::Cells);
+        narrowing.measure(1, &centres(half));
+        for (n, quarter) in half.children().into_iter().enumerate() {
+            let distance = f64::from(narrowing.nearest(1, n).distance) * lattice.voxel;
+            let exact = ssvh.closest(quarter.centre(lattice)).distance_squared.sqrt();
+            let error = f64::from(narrowing.nearest(1, n).error) * lattice.voxel;
+            assert!((distance - exact).abs() <= error, "{distance} {exact} {error}");
+            for extent in [Extent::Nodes, Extent::Cells] {
+                narrowing.narrow(1, n, 2, extent);
+                check(&mut narrowing, 2, quarter, extent);
+            }
+        }
+    }
+    counts
+}
+
+fn shares(count: usize) -> Vec<[f64; 3]> {
+    let mut state = 7u64;
+    let mut random = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let corners = (0..8).map(|n: i32| [n >> 2, n >> 1 & 1, n & 1].map(f64::from));
+    corners.chain((0..count).map(|_| [random(), random(), random()])).collect()
+}
+
+#[test]
+fn lists_name_the_closest_triangle_of_the_hierarchy() {
+    let mesh = shapes::carved_cube(12);
+    for (voxel, origin) in [(0.05, [8, -8, 16]), (0.01, [0, 40, -96]), (0.2, [-8, 0, 0]), (0.05, [160, 8, 8])]
+    {
+        let [leaf, halves, quarters] = check_leaf(&mesh, Lattice { voxel }, Ijk(origin), &shares(12));
+        assert!(leaf > 0 && halves <= 8 * leaf && quarters <= 16 * halves, "{leaf} {halves} {quarters}");
+    }
+}
+
+#[test]
+fn lists_get_shorter() {
+    let mesh = shapes::carved_cube(48);
+    let [leaf, halves, quarters] = check_leaf(&mesh, Lattice { voxel: 0.01 }, Ijk([48, 16, -8]), &shares(2));
+    // Of nodes and of cells each.
+    assert!(halves < 8 * leaf / 2 && quarters < 16 * halves / 2, "{leaf} {halves} {quarters}");
+    assert!(leaf < mesh.triangles.len() / 4, "{leaf} of {}", mesh.triangles.len());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    #[test]
+    fn lists_of_anything_name_the_closest_triangle(
+        corners in prop::collection::vec(prop::array::uniform3(prop::array::uniform3(-1.0..1.0f64)), 1..60),
+        squeeze in 0..3usize,
+        far in prop::array::uniform3(-30..30i32),
+        voxel in 0.005..0.2f64,
+    ) {
+        let mut corners = corners;
+        for (n, t) in corners.iter_mut().enumerate() {
+            match (n + squeeze) % 4 {
+                // Needles, triangles without extent, and large ones.
+                0 => t[2] = std::array::from_fn(|a| 0.3 * t[0][a] + 0.7 * t[1][a]),
+                1 if n % 5 == 0 => t[1] = t[0],
+                2 if n % 7 == 0 => *t = t.map(|p| p.map(|x| 100.0 * x)),
+                _ => {}
+            }
+        }
+        check_leaf(&soup(&corners), Lattice { voxel }, Ijk(far.map(|x| 8 * (x / 4))), &shares(4));
+    }
+}
+
+#[test]
+fn a_leaf_is_found_by_its_origin() {
+    let origins: Vec<Ijk> =
+        [[0, 0, 0], [-8, 0, 0], [512, -64, 8], [56, 56, 56], [64, 56, 56], [-8, -8, -8]].map(Ijk).to_vec();
+    let index = LeafIndex::new(&origins);
+    for (n, &origin) in origins.iter().enumerate() {
+        assert_eq!(index.get(origin), Some(n));
+        assert_eq!(index.get(origin + Ijk([7, 3, 5])), Some(n));
+    }
+    for node in [[8, 0, 0], [-9, 0, 0], [i32::MAX; 3], [i32::MIN; 3], [511, -64, 8]] {
+        assert_eq!(index.get(Ijk(node)), None, "{node:?}");
+    }
+    assert_eq!(LeafIndex::default().get(Ijk([0; 3])), None);
+}
+
+#[test]
+fn lists_are_kept_by_block() {
+    let mut lists = BlockLists::default();
+    lists.begin_leaf();
+    lists.push(Ijk([0, 0, 2]), &[5, 6]);
+    lists.push(Ijk([4, 0, 0]), &[7]);
+    lists.begin_leaf();
+    lists.push(Ijk([8, 0, 0]), &[9]);
+    lists.drop_leaf();
+    let mut others = BlockLists::default();
+    others.begin_leaf();
+    others.push(Ijk([30, 6, 6]), &[1, 2, 3]);
+    lists.append(&mut others);
+    let lattice = Lattice { voxel: 0.5 };
+    let lists = CandidateLists::new(lattice, &[Ijk([0, 0, 0]), Ijk([24, 0, 0])], lists);
+    assert_eq!(lists.of_cell(Ijk([1, 1, 3])), Some(&[5, 6][..]));
+    assert_eq!(lists.of_cell(Ijk([5, 0, 1])), Some(&[7][..]));
+    assert_eq!(lists.of_cell(Ijk([31, 7, 7])), Some(&[1, 2, 3][..]));
+    assert_eq!(lists.of_cell(Ijk([0, 0, 0])), None);
+    assert_eq!(lists.of_cell(Ijk([8, 0, 0])), None);
+    assert_eq!(lists.at([0.7, 0.6, 1.9]), Some(&[5, 6][..]));
+    assert_eq!(lists.at([f64::NAN, 0.0, f64::INFINITY]), None);
+}
+
+#[test]
+fn all_seven_regions_of_a_triangle() {
+    let mesh =
+        soup(&[[[0.0; 3], [4.0, 0.0, 0.0], [0.0, 3.0, 0.0]], [[9.0; 3], [9.0, 9.0, 8.0], [9.0, 8.0, 9.0]]]);
+    for origin in [[0, 0, 0], [8, 0, 8], [-16, 8, 0], [-16, -16, 8], [16, -8, -8], [0, 16, 0], [8, 8, 0]] {
+        check_leaf(&mesh, Lattice { voxel: 0.3 }, Ijk(origin), &shares(3));
+    }
+}

@@ -1,0 +1,296 @@
+//! Vectors of floats, as wide as the machine has them, with the operators of numbers.
+//!
+//! [`in_lanes`] runs a kernel with the widest instructions that the machine has of those that the program was built for,
+//! picked at run time. Every lane takes the same operations in the same order as a number would, none fused, so the
+//! results do not depend on the machine. Kernels must not use closures, which would not be compiled for those
+//! instructions.
+
+use pulp::{Arch, Simd, WithSimd};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
+
+/// Runs a kernel.
+#[inline(always)]
+pub fn in_lanes<K: WithSimd>(kernel: K) -> K::Output {
+    Arch::new().dispatch(kernel)
+}
+
+macro_rules! lanes {
+    ($lanes:ident, $mask:ident, $float:ident, $vector:ident, $bits:ident,
+     $splat:ident, $add:ident, $sub:ident, $mul:ident, $div:ident, $min:ident, $max:ident, $sqrt:ident,
+     $less:ident, $at_most:ident, $select:ident, $and:ident, $or:ident, $first:ident, $count:ident, $load:ident, $store:ident) => {
+        #[doc = concat!("Several `", stringify!($float), "`.")]
+        #[derive(Clone, Copy, Debug)]
+        pub struct $lanes<S: Simd>(S, S::$vector);
+
+        /// For each lane whether something holds.
+        #[derive(Clone, Copy, Debug)]
+        pub struct $mask<S: Simd>(S, S::$bits);
+
+        impl<S: Simd> $lanes<S> {
+            /// The number of lanes.
+            pub const COUNT: usize = S::$count;
+
+            /// The same number in all lanes.
+            #[inline(always)]
+            pub fn splat(simd: S, x: $float) -> Self {
+                $lanes(simd, simd.$splat(x))
+            }
+
+            /// The vectors that eight numbers fill, one after the other.
+            #[inline(always)]
+            pub fn load(simd: S, from: &[$float; 8], vector: usize) -> Self {
+                $lanes(simd, S::$load(from).0[vector])
+            }
+
+            /// Puts a vector back among eight numbers.
+            #[inline(always)]
+            pub fn store(self, to: &mut [$float; 8], vector: usize) {
+                S::$store(to).0[vector] = self.1;
+            }
+
+            /// The smaller ones.
+            #[inline(always)]
+            pub fn min(self, other: Self) -> Self {
+                $lanes(self.0, self.0.$min(self.1, other.1))
+            }
+
+            /// The larger ones.
+            #[inline(always)]
+            pub fn max(self, other: Self) -> Self {
+                $lanes(self.0, self.0.$max(self.1, other.1))
+            }
+
+            /// Square roots.
+            #[inline(always)]
+            pub fn sqrt(self) -> Self {
+                $lanes(self.0, self.0.$sqrt(self.1))
+            }
+
+            /// Which are less than those of `other`.
+            #[inline(always)]
+            pub fn less(self, other: Self) -> $mask<S> {
+                $mask(self.0, self.0.$less(self.1, other.1))
+            }
+
+            /// Which are at most those of `other`.
+            #[inline(always)]
+            pub fn at_most(self, other: Self) -> $mask<S> {
+                $mask(self.0, self.0.$at_most(self.1, other.1))
+            }
+        }
+
+        impl<S: Simd> $mask<S> {
+            /// `yes` where it holds, `no` elsewhere.
+            #[inline(always)]
+            pub fn select(self, yes: $lanes<S>, no: $lanes<S>) -> $lanes<S> {
+                $lanes(self.0, self.0.$select(self.1, yes.1, no.1))
+            }
+
+            /// Whether it holds in any lane.
+            #[inline(always)]
+            pub fn any(self) -> bool {
+                self.0.$first(self.1) < S::$count
+            }
+        }
+
+        impl<S: Simd> BitAnd for $mask<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn bitand(self, other: Self) -> Self {
+                $mask(self.0, self.0.$and(self.1, other.1))
+            }
+        }
+
+        impl<S: Simd> BitOr for $mask<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn bitor(self, other: Self) -> Self {
+                $mask(self.0, self.0.$or(self.1, other.1))
+            }
+        }
+
+        impl<S: Simd> Add for $lanes<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn add(self, other: Self) -> Self {
+                $lanes(self.0, self.0.$add(self.1, other.1))
+            }
+        }
+
+        impl<S: Simd> Sub for $lanes<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn sub(self, other: Self) -> Self {
+                $lanes(self.0, self.0.$sub(self.1, other.1))
+            }
+        }
+
+        impl<S: Simd> Mul for $lanes<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn mul(self, other: Self) -> Self {
+                $lanes(self.0, self.0.$mul(self.1, other.1))
+            }
+        }
+
+        impl<S: Simd> Div for $lanes<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn div(self, other: Self) -> Self {
+                $lanes(self.0, self.0.$div(self.1, other.1))
+            }
+        }
+    };
+}
+
+lanes!(
+    F32s,
+    M32s,
+    f32,
+    f32s,
+    m32s,
+    splat_f32s,
+    add_f32s,
+    sub_f32s,
+    mul_f32s,
+    div_f32s,
+    min_f32s,
+    max_f32s,
+    sqrt_f32s,
+    less_than_f32s,
+    less_than_or_equal_f32s,
+    select_f32s,
+    and_m32s,
+    or_m32s,
+    first_true_m32s,
+    F32_LANES,
+    as_simd_f32s,
+    as_mut_simd_f32s
+);
+lanes!(
+    F64s,
+    M64s,
+    f64,
+    f64s,
+    m64s,
+    splat_f64s,
+    add_f64s,
+    sub_f64s,
+    mul_f64s,
+    div_f64s,
+    min_f64s,
+    max_f64s,
+    sqrt_f64s,
+    less_than_f64s,
+    less_than_or_equal_f64s,
+    select_f64s,
+    and_m64s,
+    or_m64s,
+    first_true_m64s,
+    F64_LANES,
+    as_simd_f64s,
+    as_mut_simd_f64s
+);
+
+/// Three vectors as coordinates.
+macro_rules! points {
+    ($points:ident, $lanes:ident, $float:ident) => {
+        #[doc = concat!("Points with coordinates of several `", stringify!($float), "`.")]
+        #[derive(Clone, Copy, Debug)]
+        pub struct $points<S: Simd> {
+            /// First coordinates.
+            pub x: $lanes<S>,
+            /// Second coordinates.
+            pub y: $lanes<S>,
+            /// Third coordinates.
+            pub z: $lanes<S>,
+        }
+
+        impl<S: Simd> $points<S> {
+            /// The same point in all lanes.
+            #[inline(always)]
+            pub fn splat(simd: S, p: [$float; 3]) -> Self {
+                $points {
+                    x: $lanes::splat(simd, p[0]),
+                    y: $lanes::splat(simd, p[1]),
+                    z: $lanes::splat(simd, p[2]),
+                }
+            }
+
+            /// One of the vectors that eight points fill.
+            #[inline(always)]
+            pub fn load(simd: S, from: &[[$float; 8]; 3], vector: usize) -> Self {
+                $points {
+                    x: $lanes::load(simd, &from[0], vector),
+                    y: $lanes::load(simd, &from[1], vector),
+                    z: $lanes::load(simd, &from[2], vector),
+                }
+            }
+
+            /// Puts vectors back among eight points.
+            #[inline(always)]
+            pub fn store(self, to: &mut [[$float; 8]; 3], vector: usize) {
+                self.x.store(&mut to[0], vector);
+                self.y.store(&mut to[1], vector);
+                self.z.store(&mut to[2], vector);
+            }
+
+            /// The scalar products.
+            #[inline(always)]
+            pub fn dot(self, other: Self) -> $lanes<S> {
+                self.x * other.x + self.y * other.y + self.z * other.z
+            }
+
+            /// The vector products.
+            #[inline(always)]
+            pub fn cross(self, other: Self) -> Self {
+                $points {
+                    x: self.y * other.z - other.y * self.z,
+                    y: self.z * other.x - other.z * self.x,
+                    z: self.x * other.y - other.x * self.y,
+                }
+            }
+
+            /// The vectors times numbers.
+            #[inline(always)]
+            pub fn times(self, factors: $lanes<S>) -> Self {
+                $points { x: self.x * factors, y: self.y * factors, z: self.z * factors }
+            }
+        }
+
+        impl<S: Simd> Add for $points<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn add(self, other: Self) -> Self {
+                $points { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
+            }
+        }
+
+        impl<S: Simd> Sub for $points<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn sub(self, other: Self) -> Self {
+                $points { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
+            }
+        }
+    };
+}
+
+points!(P32s, F32s, f32);
+points!(P64s, F64s, f64);
+
+impl<S: Simd> M32s<S> {
+    /// Of two sets of points those that the mask says.
+    #[inline(always)]
+    pub fn select_points(self, yes: P32s<S>, no: P32s<S>) -> P32s<S> {
+        P32s { x: self.select(yes.x, no.x), y: self.select(yes.y, no.y), z: self.select(yes.z, no.z) }
+    }
+}
+
+impl<S: Simd> M64s<S> {
+    /// Of two sets of points those that the mask says.
+    #[inline(always)]
+    pub fn select_points(self, yes: P64s<S>, no: P64s<S>) -> P64s<S> {
+        P64s { x: self.select(yes.x, no.x), y: self.select(yes.y, no.y), z: self.select(yes.z, no.z) }
+    }
+}
