@@ -102,6 +102,12 @@ pub(super) struct Solver<'a> {
 impl Solver<'_> {
     /// The intersection of `edge`.
     pub(super) fn solve(&self, edge: &GridEdge, statistics: &mut EdgeStatistics) -> Root {
+        statistics.intersected += 1;
+        self.halve(edge, statistics)
+    }
+
+    /// The intersection of an edge that has been counted.
+    pub(super) fn halve(&self, edge: &GridEdge, statistics: &mut EdgeStatistics) -> Root {
         match self.bracket(edge, statistics) {
             Ok(bracket) => {
                 let tried = self.propose(edge, &bracket).map(|p| self.end(edge, p.t, p.triangle, statistics));
@@ -111,52 +117,8 @@ impl Solver<'_> {
         }
     }
 
-    /// The intersections of up to eight edges that have the candidates `near` in common, each as
-    /// [`solve`](Self::solve) finds it. Their first attempts are verified together.
-    pub(super) fn solve_together(
-        &self,
-        edges: &[GridEdge],
-        near: &[u32],
-        statistics: &mut EdgeStatistics,
-        roots: &mut [Root; 8],
-    ) {
-        let mut points = [DVec3::ZERO; 8];
-        let mut open: [Option<(Bracket, Option<Proposal>)>; 8] = [None; 8];
-        let mut proposed = 0;
-        for (n, edge) in edges.iter().enumerate() {
-            match self.bracket(edge, statistics) {
-                Ok(bracket) => {
-                    let proposal = self.propose(edge, &bracket);
-                    if let Some(Proposal { t, .. }) = proposal {
-                        points[proposed] = self.at(edge, t);
-                        proposed += 1;
-                    }
-                    open[n] = Some((bracket, proposal));
-                }
-                Err(root) => roots[n] = root,
-            }
-        }
-        if proposed > 0 {
-            // Lanes that are left over repeat one that is used.
-            let used = points[0];
-            points[proposed..].fill(used);
-        }
-        statistics.queries += proposed as u64;
-        let hits = (proposed > 0).then(|| self.distance.ssvh().closest_of_to_eight(near, &points, proposed));
-        let mut answers = points.iter().zip(hits.iter().flatten());
-        for (n, edge) in edges.iter().enumerate() {
-            let Some((bracket, proposal)) = open[n] else { continue };
-            let tried = proposal.and_then(|Proposal { t, .. }| {
-                let (&p, hit) = answers.next()?;
-                Some(End { t, sample: self.distance.from_triangle(p, hit.triangle) })
-            });
-            roots[n] = self.go_on(edge, bracket, tried, statistics);
-        }
-    }
-
     /// The ends of an edge with their distances; its root at once where there is nothing to solve.
     fn bracket(&self, edge: &GridEdge, statistics: &mut EdgeStatistics) -> Result<Bracket, Root> {
-        statistics.intersected += 1;
         let [inside, outside] = edge.triangles;
         let low = End { t: 0.0, sample: self.node(edge, edge.inside, inside, statistics) };
         let high = End { t: 1.0, sample: self.node(edge, edge.outside, outside, statistics) };
@@ -253,7 +215,7 @@ impl Solver<'_> {
         end.sample.distance - self.r
     }
 
-    fn at(&self, edge: &GridEdge, t: f64) -> DVec3 {
+    pub(super) fn at(&self, edge: &GridEdge, t: f64) -> DVec3 {
         edge.inside + (edge.outside - edge.inside) * t
     }
 

@@ -5,6 +5,7 @@
 mod analytic;
 mod bisection;
 mod crossings;
+mod following;
 mod hybrid;
 mod regions;
 mod shared;

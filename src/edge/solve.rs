@@ -60,8 +60,10 @@ pub struct NearTriangles {
 /// How the intersection of an edge is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum RootMethod {
-    /// In closed form where that works, by bisection elsewhere.
+    /// In closed form on the triangle that is closest where the last one had its root.
     #[default]
+    Following,
+    /// The method of \[LW11\]: in closed form where both ends share a triangle, with halving between attempts.
     Hybrid,
     /// By halving only, until abs(phi) is at most `tolerance` voxels: the measure that Table V of \[LW11\]
     /// holds against the hybrid method.
@@ -100,7 +102,7 @@ pub fn solve(
     near: &NearTriangles,
     run: &RunSettings,
 ) -> Result<(Crossings, EdgeStatistics), Cancelled> {
-    let settings = EdgeSettings { lattice, r, method: RootMethod::Hybrid };
+    let settings = EdgeSettings { lattice, r, method: RootMethod::Following };
     solve_by(distance, &settings, signs, numbers, near, run)
 }
 
@@ -157,10 +159,11 @@ struct LeafSolver<'a> {
 impl LeafSolver<'_> {
     fn solve(&self, leaf: LeafId, samples: &mut [Crossing]) -> EdgeStatistics {
         let mut statistics = EdgeStatistics::default();
-        let (RootMethod::Hybrid, Some(lists)) = (self.method, &self.near.lists) else {
+        let (RootMethod::Following, Some(lists)) = (self.method, &self.near.lists) else {
             for ((axis, number), sample) in self.numbers.in_leaf(leaf).zip(samples) {
                 let edge = self.edge(leaf, axis, number);
                 let root = match self.method {
+                    RootMethod::Following => self.solver.follow(&edge, &mut statistics),
                     RootMethod::Hybrid => self.solver.solve(&edge, &mut statistics),
                     RootMethod::Bisection { tolerance } => {
                         bisection::solve(&self.solver, &edge, tolerance, &mut statistics)
@@ -194,11 +197,11 @@ impl LeafSolver<'_> {
                 let mut roots = [unsolved; 8];
                 match near {
                     Some(near) => {
-                        self.solver.solve_together(&together, near, &mut statistics, &mut roots);
+                        self.solver.follow_together(&together, near, &mut statistics, &mut roots);
                     }
                     None => {
                         for (edge, root) in together.iter().zip(&mut roots) {
-                            *root = self.solver.solve(edge, &mut statistics);
+                            *root = self.solver.follow(edge, &mut statistics);
                         }
                     }
                 }

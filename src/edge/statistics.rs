@@ -11,7 +11,7 @@ pub const COUNTED_SUBDIVISIONS: usize = 6;
 pub struct EdgeStatistics {
     /// Intersected grid edges.
     pub intersected: u64,
-    /// Entry n: edges solved analytically after n subdivisions; by plain bisection, edges solved by n halvings.
+    /// Entry n: edges solved analytically after n attempts that failed; by the hybrid method, after n subdivisions; by plain bisection, edges solved by n halvings.
     pub by_subdivision: [u64; COUNTED_SUBDIVISIONS + 1],
     /// Edges that bisection finished; by plain bisection, those that took more than six halvings.
     pub bisected: u64,
