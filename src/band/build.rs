@@ -83,20 +83,20 @@ pub fn build_filtered<E: From<Cancelled> + Send>(
     let worker = Worker { filter, settings: *settings };
     let phase = run.phase(Phase::Band, boxes.len() as u64);
     run.install(|| {
-        let mut ready = LeafBatch::default();
+        let mut ready: Vec<LeafBatch> = Vec::new();
         let mut batches = boxes.chunks(BOXES_PER_BATCH);
         loop {
             let next = batches.next();
             // The bridge takes the last batch while the workers fill the next one.
             let (sunk, filled) = rayon::join(
-                || if ready.is_empty() && ready.inside_blocks.is_empty() { Ok(()) } else { sink(ready) },
+                || ready.into_iter().try_for_each(&mut sink),
                 || next.map(|boxes| worker.fill(boxes, &phase)),
             );
             sunk?;
             let Some(filled) = filled else { break };
-            let (batch, counts) = filled?;
+            let (batches, counts) = filled?;
             statistics += counts;
-            ready = batch;
+            ready = batches;
         }
         Ok(statistics)
     })
@@ -169,7 +169,7 @@ impl Worker<'_> {
         &self,
         boxes: &[Block],
         phase: &crate::run::PhaseGuard,
-    ) -> Result<(LeafBatch, FilterStatistics), Cancelled> {
+    ) -> Result<(Vec<LeafBatch>, FilterStatistics), Cancelled> {
         let filled: Vec<(LeafBatch, FilterStatistics)> = boxes
             .par_iter()
             .with_max_len(1)
@@ -178,13 +178,15 @@ impl Worker<'_> {
                 Ok(self.bounding_box(block, narrowing))
             })
             .collect::<Result<_, Cancelled>>()?;
-        let mut batch = LeafBatch::default();
+        let mut batches = Vec::with_capacity(filled.len());
         let mut statistics = FilterStatistics::default();
-        for (mut leaves, counts) in filled {
-            batch.append(&mut leaves);
+        for (batch, counts) in filled {
+            if !batch.is_empty() || !batch.inside_blocks.is_empty() {
+                batches.push(batch);
+            }
             statistics += counts;
         }
-        Ok((batch, statistics))
+        Ok((batches, statistics))
     }
 
     fn bounding_box(&self, block: Block, narrowing: &mut Narrowing) -> (LeafBatch, FilterStatistics) {

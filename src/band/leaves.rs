@@ -32,16 +32,6 @@ impl LeafBatch {
     pub fn is_empty(&self) -> bool {
         self.origins.is_empty()
     }
-
-    /// Appends all of `other`.
-    pub fn append(&mut self, other: &mut LeafBatch) {
-        self.origins.append(&mut other.origins);
-        self.values.append(&mut other.values);
-        self.active.append(&mut other.active);
-        self.closest.append(&mut other.closest);
-        self.inside_blocks.append(&mut other.inside_blocks);
-        self.lists.append(&mut other.lists);
-    }
 }
 
 /// The nodes of a leaf with a negative value.

@@ -30,8 +30,12 @@ fn build_all(settings: &BandSettings, threads: usize) -> LeafBatch {
     let distance = SignedDistance::new(&mesh, &topology);
     let run = RunSettings::with_threads(threads).unwrap();
     let mut all = LeafBatch::default();
-    build(&distance, settings, &run, |mut batch| {
-        all.append(&mut batch);
+    build(&distance, settings, &run, |batch| {
+        all.origins.extend(batch.origins);
+        all.values.extend(batch.values);
+        all.active.extend(batch.active);
+        all.closest.extend(batch.closest);
+        all.inside_blocks.extend(batch.inside_blocks);
         Ok::<_, Cancelled>(())
     })
     .unwrap();

@@ -59,15 +59,7 @@ impl BlockLists {
         self.ends.push(self.positions.len());
     }
 
-    /// Appends all of `other`.
-    pub fn append(&mut self, other: &mut BlockLists) {
-        let (blocks, positions) = (self.ends.len(), self.positions.len());
-        let leaves = other.leaves.drain(..);
-        self.leaves.extend(leaves.map(|leaf| Leaf { first: leaf.first + blocks, ..leaf }));
-        self.ends.extend(other.ends.drain(..).map(|end| end + positions));
-        self.positions.append(&mut other.positions);
-    }
-
+    #[inline]
     fn list(&self, leaf: usize, node: Ijk) -> Option<&[u32]> {
         let Leaf { mask, first } = *self.leaves.get(leaf)?;
         let bit = 1u64 << block_in_leaf(node);
@@ -84,25 +76,36 @@ impl BlockLists {
 #[derive(Clone, Debug)]
 pub struct CandidateLists {
     lattice: Lattice,
+    /// Numbers the leaves of all parts.
     index: LeafIndex,
-    lists: BlockLists,
+    /// Per leaf its part, and its number there.
+    places: Vec<(u32, u32)>,
+    /// As they were made: they are not moved together.
+    parts: Vec<BlockLists>,
 }
 
 impl CandidateLists {
-    /// From the lists of the leaves at `origins`, in that order.
+    /// From parts: the lists of some leaves, and the leaves' origins in the same order.
     ///
     /// # Panics
     /// When the numbers of leaves differ.
-    pub fn new(lattice: Lattice, origins: &[Ijk], lists: BlockLists) -> CandidateLists {
-        assert_eq!(origins.len(), lists.leaves.len(), "lists for each leaf");
-        CandidateLists { lattice, index: LeafIndex::new(origins), lists }
+    pub fn new(lattice: Lattice, parts: impl IntoIterator<Item = (Vec<Ijk>, BlockLists)>) -> CandidateLists {
+        let (mut all, mut places, mut lists) = (Vec::new(), Vec::new(), Vec::new());
+        for (part, (origins, own)) in (0..).zip(parts) {
+            assert_eq!(origins.len(), own.leaves.len(), "lists for each leaf");
+            places.extend((0..origins.len() as u32).map(|n| (part, n)));
+            all.extend(origins);
+            lists.push(own);
+        }
+        CandidateLists { lattice, index: LeafIndex::new(&all), places, parts: lists }
     }
 
     /// Positions in the hierarchy of the triangles that can be closest to a point of the cell whose lowest node is
     /// `node`, and of its edges; `None` when the surface is not that near.
     #[inline]
     pub fn of_cell(&self, node: Ijk) -> Option<&[u32]> {
-        self.lists.list(self.index.get(node)?, node)
+        let (part, leaf) = self.places[self.index.get(node)?];
+        self.parts[part as usize].list(leaf as usize, node)
     }
 
     /// The same for a point.

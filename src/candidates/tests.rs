@@ -145,9 +145,9 @@ fn lists_are_kept_by_block() {
     let mut others = BlockLists::default();
     others.begin_leaf();
     others.push(Ijk([30, 6, 6]), &[1, 2, 3]);
-    lists.append(&mut others);
     let lattice = Lattice { voxel: 0.5 };
-    let lists = CandidateLists::new(lattice, &[Ijk([0, 0, 0]), Ijk([24, 0, 0])], lists);
+    let parts = [(vec![Ijk([0, 0, 0])], lists), (vec![Ijk([24, 0, 0])], others)];
+    let lists = CandidateLists::new(lattice, parts);
     assert_eq!(lists.of_cell(Ijk([1, 1, 3])), Some(&[5, 6][..]));
     assert_eq!(lists.of_cell(Ijk([5, 0, 1])), Some(&[7][..]));
     assert_eq!(lists.of_cell(Ijk([31, 7, 7])), Some(&[1, 2, 3][..]));

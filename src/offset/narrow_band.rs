@@ -1,7 +1,7 @@
 //! The band's way into OpenVDB and back.
 
 use crate::band::{self, BandSettings, LeafBatch, LeafMask, SignField, inside_mask};
-use crate::candidates::{BlockLists, CandidateLists};
+use crate::candidates::CandidateLists;
 use crate::distance::SignedDistance;
 use crate::edge::NodeTriangles;
 use crate::error::Error;
@@ -27,12 +27,12 @@ pub(crate) fn build(
         Ok(surface.fill_inside(&origins, &sides)?)
     };
     let mut inside_blocks = Vec::new();
-    let (mut listed, mut lists) = (Vec::new(), BlockLists::default());
+    let mut lists = Vec::new();
     let statistics = band::build(distance, settings, run, |mut batch| {
         inside_blocks.extend_from_slice(&batch.inside_blocks);
-        listed.extend_from_slice(&batch.origins);
-        lists.append(&mut batch.lists);
-        insert(&batch)
+        insert(&batch)?;
+        lists.push((std::mem::take(&mut batch.origins), std::mem::take(&mut batch.lists)));
+        Ok::<_, Error>(())
     })?;
     let leaves = surface.leaf_origins();
     let jumps = band::leaves_at_jumps(&leaves, &inside_blocks, settings.background(), |nodes| {
@@ -43,7 +43,7 @@ pub(crate) fn build(
         closest.insert_leaves(&jumps.origins, &jumps.closest, &jumps.active)?;
     }
     surface.prune();
-    let lists = CandidateLists::new(settings.lattice, &listed, lists);
+    let lists = CandidateLists::new(settings.lattice, lists);
     Ok((Band { surface, closest: Some(closest) }, lists, statistics))
 }
 
