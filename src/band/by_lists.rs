@@ -62,7 +62,7 @@ impl Worker<'_> {
         let exact = side.is_none().then(|| {
             let points = halves.map(|half| half.centre(lattice));
             let ssvh = self.filter.distance.ssvh();
-            let hits = ssvh.closest_of_to_eight(work.narrowing.list(depth), &points, 8);
+            let hits = ssvh.closest_of_to_eight(work.narrowing.list(depth), &points);
             let signed = |n: usize| self.filter.distance.from_triangle(points[n], hits[n].triangle).distance;
             std::array::from_fn::<f64, 8, _>(signed)
         });
@@ -94,7 +94,7 @@ impl Worker<'_> {
             // An edge that the surface crosses has valid ends.
             if valid > 0 {
                 work.narrowing.narrow(depth, n, half.side, Extent::Cells);
-                work.lists.push(half.origin, work.narrowing.list(depth + 1));
+                work.lists.push(half.origin, work.narrowing.bounded(depth, n));
             }
         }
     }
@@ -104,7 +104,7 @@ impl Worker<'_> {
         let nodes = block.children().map(|b| b.origin);
         let points = nodes.map(|node| DVec3::from(self.filter.lattice.world_from_index(node)));
         let ssvh = self.filter.distance.ssvh();
-        let hits = ssvh.closest_of_to_eight(work.narrowing.list(depth), &points, 8);
+        let hits = ssvh.closest_of_to_eight(work.narrowing.list(depth), &points);
         self.set_nodes(&nodes, &points, &hits, side, &mut work.leaf, work.statistics)
     }
 }

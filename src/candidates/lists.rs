@@ -1,7 +1,9 @@
 //! The lists of all blocks of 2^3 nodes that the offset surface may pass, by leaf.
 
 use super::LeafIndex;
+use super::near::{Candidates, Entry, PlaneBound, base};
 use crate::lattice::{Ijk, Lattice};
+use glam::DVec3;
 
 /// The number of the block of 2^3 nodes that holds a node, in 0..64 within its leaf: the halves of halves of the leaf
 /// in the order of [`Block::children`](crate::filter::Block::children).
@@ -16,8 +18,9 @@ pub struct BlockLists {
     leaves: Vec<Leaf>,
     /// Per block the end of its list.
     ends: Vec<usize>,
-    /// Positions of triangles in the hierarchy.
-    positions: Vec<u32>,
+    /// Per block what the bounds of its list are above.
+    bases: Vec<f32>,
+    entries: Vec<Entry>,
 }
 
 /// The blocks of a leaf that have a list.
@@ -42,25 +45,37 @@ impl BlockLists {
     pub fn drop_leaf(&mut self) {
         let leaf = self.leaves.pop().expect("a leaf was begun");
         self.ends.truncate(leaf.first);
-        self.positions.truncate(self.ends.last().copied().unwrap_or(0));
+        self.bases.truncate(leaf.first);
+        self.entries.truncate(self.ends.last().copied().unwrap_or(0));
     }
 
-    /// Adds the list of the block at `origin` to the last leaf that was begun. Blocks of a leaf come by ascending
-    /// number.
+    /// Adds the list of the block at `origin` to the last leaf that was begun: positions of triangles in the hierarchy, and
+    /// bounds around the centre of the block's nodes. Blocks of a leaf come by ascending number.
     ///
     /// # Panics
     /// When no leaf was begun, or the block is not the next.
-    pub fn push(&mut self, origin: Ijk, positions: &[u32]) {
+    pub fn push(&mut self, origin: Ijk, list: impl Iterator<Item = (u32, PlaneBound)> + Clone) {
         let leaf = self.leaves.last_mut().expect("a leaf was begun");
         let number = block_in_leaf(origin);
         assert!(leaf.mask >> number == 0, "blocks come by ascending number");
         leaf.mask |= 1 << number;
-        self.positions.extend_from_slice(positions);
-        self.ends.push(self.positions.len());
+        let base = base(list.clone().map(|(_, bound)| bound));
+        let first = self.entries.len();
+        let mut nearest = (f32::INFINITY, first);
+        for (position, bound) in list {
+            if bound.low < nearest.0 {
+                nearest = (bound.low, self.entries.len());
+            }
+            self.entries.push(Entry::new(position, bound, base));
+        }
+        // The nearest to the centre comes first: it is asked before all others.
+        self.entries.swap(first, nearest.1);
+        self.bases.push(base);
+        self.ends.push(self.entries.len());
     }
 
     #[inline]
-    fn list(&self, leaf: usize, node: Ijk) -> Option<&[u32]> {
+    fn list(&self, leaf: usize, node: Ijk) -> Option<(&[Entry], f32)> {
         let Leaf { mask, first } = *self.leaves.get(leaf)?;
         let bit = 1u64 << block_in_leaf(node);
         if mask & bit == 0 {
@@ -68,7 +83,7 @@ impl BlockLists {
         }
         let list = first + (mask & (bit - 1)).count_ones() as usize;
         let start = list.checked_sub(1).map_or(0, |before| self.ends[before]);
-        Some(&self.positions[start..self.ends[list]])
+        Some((&self.entries[start..self.ends[list]], self.bases[list]))
     }
 }
 
@@ -100,17 +115,21 @@ impl CandidateLists {
         CandidateLists { lattice, index: LeafIndex::new(&all), places, parts: lists }
     }
 
-    /// Positions in the hierarchy of the triangles that can be closest to a point of the cell whose lowest node is
-    /// `node`, and of its edges; `None` when the surface is not that near.
+    /// The triangles that can be closest to a point of the cell whose lowest node is `node`; `None` when the surface is not
+    /// that near.
     #[inline]
-    pub fn of_cell(&self, node: Ijk) -> Option<&[u32]> {
+    pub fn of_cell(&self, node: Ijk) -> Option<Candidates<'_>> {
         let (part, leaf) = self.places[self.index.get(node)?];
-        self.parts[part as usize].list(leaf as usize, node)
+        let (entries, base) = self.parts[part as usize].list(leaf as usize, node)?;
+        let lowest = Ijk(node.0.map(|x| x & !1));
+        let voxel = self.lattice.voxel;
+        let centre = DVec3::from(self.lattice.world_from_index(lowest)) + 0.5 * voxel;
+        Some(Candidates { entries, base, centre, voxel })
     }
 
     /// The same for a point.
     #[inline]
-    pub fn at(&self, p: [f64; 3]) -> Option<&[u32]> {
+    pub fn at(&self, p: [f64; 3]) -> Option<Candidates<'_>> {
         // Beyond the lattice, casting saturates, and there is no list.
         self.of_cell(Ijk(p.map(|x| (x / self.lattice.voxel).floor() as i32)))
     }

@@ -20,9 +20,11 @@ mod flat;
 mod leaf_index;
 mod lists;
 mod narrowing;
+mod near;
 #[cfg(test)]
 mod tests;
 
 pub use leaf_index::LeafIndex;
 pub use lists::{BlockLists, CandidateLists, block_in_leaf};
-pub use narrowing::{Extent, Narrowing, Nearest};
+pub use narrowing::{EightPoints, Extent, Narrowing, Nearest};
+pub use near::{Candidates, PlaneBound};

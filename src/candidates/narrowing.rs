@@ -1,5 +1,6 @@
 //! The lists of one leaf, from the hierarchy down to blocks of 2^3 nodes.
 
+use super::PlaneBound;
 use super::flat::{FlatTriangle, ROUNDING};
 use crate::filter::Block;
 use crate::geom::lanes::{F32s, P32s, in_lanes};
@@ -106,6 +107,19 @@ impl Narrowing {
     /// The number of triangles in the list of `depth`.
     pub fn count(&self, depth: usize) -> usize {
         self.levels[depth].list.len()
+    }
+
+    /// The list of `depth` + 1 as it was narrowed last, from half number `n`: positions in the hierarchy, and bounds around
+    /// the half's centre.
+    pub fn bounded(&self, depth: usize, n: usize) -> impl Iterator<Item = (u32, PlaneBound)> + Clone + '_ {
+        let Level { list, bounds, .. } = &self.levels[depth];
+        // Both lists have the same order.
+        let mut parent = list.iter().zip(bounds);
+        self.levels[depth + 1].list.iter().map(move |own| {
+            let (_, bound) = parent.find(|(other, _)| *other == own).expect("a part of its parent's list");
+            let direction = [bound.direction[0][n], bound.direction[1][n], bound.direction[2][n]];
+            (self.positions[*own as usize], PlaneBound { low: bound.low[n], direction })
+        })
     }
 
     /// Positions in the hierarchy of the list of `depth`.

@@ -29,9 +29,8 @@ fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]
         for share in shares {
             let node = DVec3::from(block.origin.0.map(f64::from));
             let p = lattice.voxel * (node + f64::from(high) * DVec3::from(*share));
-            assert_eq!(ssvh.closest_of(&list, p), ssvh.closest(p), "{block:?} {p}");
-            let eight = ssvh.closest_of_to_eight(&list, &[p; 8], 8);
-            assert!(eight.iter().all(|hit| *hit == ssvh.closest(p)));
+            let eight = ssvh.closest_of_to_eight(&list, &[p; 8]);
+            assert!(eight.iter().all(|hit| *hit == ssvh.closest(p)), "{block:?} {p}");
         }
     };
     let leaf = Block { origin, side: 8 };
@@ -60,6 +59,28 @@ fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]
             for extent in [Extent::Nodes, Extent::Cells] {
                 narrowing.narrow(1, n, 2, extent);
                 check(&mut narrowing, 2, quarter, extent);
+            }
+            let mut lists = BlockLists::default();
+            lists.begin_leaf();
+            lists.push(quarter.origin, narrowing.bounded(1, n));
+            let lists = CandidateLists::new(lattice, [(vec![origin], lists)]);
+            let near = lists.of_cell(quarter.origin).unwrap();
+            let points: Vec<DVec3> = shares
+                .iter()
+                .map(|&share| {
+                    let node = DVec3::from(quarter.origin.0.map(f64::from));
+                    lattice.voxel * (node + 2.0 * DVec3::from(share))
+                })
+                .collect();
+            for points in points.windows(8).step_by(3) {
+                let points: [DVec3; 8] = points.try_into().unwrap();
+                for count in [1, 3, 5, 8] {
+                    let hits = near.closest_to_eight(&ssvh, &points, count);
+                    for (hit, &p) in hits.iter().zip(&points).take(count) {
+                        assert_eq!(*hit, ssvh.closest(p), "{quarter:?} {p}");
+                        assert_eq!(near.closest(&ssvh, p), *hit);
+                    }
+                }
             }
         }
     }
@@ -135,26 +156,31 @@ fn a_leaf_is_found_by_its_origin() {
 
 #[test]
 fn lists_are_kept_by_block() {
+    let bound = |low| PlaneBound { low, direction: [0.6, 0.0, -0.8] };
+    let list = |positions: &[u32]| positions.iter().map(|&p| (p, bound(p as f32))).collect::<Vec<_>>();
     let mut lists = BlockLists::default();
     lists.begin_leaf();
-    lists.push(Ijk([0, 0, 2]), &[5, 6]);
-    lists.push(Ijk([4, 0, 0]), &[7]);
+    lists.push(Ijk([0, 0, 2]), list(&[6, 5]).into_iter());
+    lists.push(Ijk([4, 0, 0]), list(&[7]).into_iter());
     lists.begin_leaf();
-    lists.push(Ijk([8, 0, 0]), &[9]);
+    lists.push(Ijk([8, 0, 0]), list(&[9]).into_iter());
     lists.drop_leaf();
     let mut others = BlockLists::default();
     others.begin_leaf();
-    others.push(Ijk([30, 6, 6]), &[1, 2, 3]);
-    let lattice = Lattice { voxel: 0.5 };
+    others.push(Ijk([30, 6, 6]), list(&[1, 2, 3]).into_iter());
     let parts = [(vec![Ijk([0, 0, 0])], lists), (vec![Ijk([24, 0, 0])], others)];
-    let lists = CandidateLists::new(lattice, parts);
-    assert_eq!(lists.of_cell(Ijk([1, 1, 3])), Some(&[5, 6][..]));
-    assert_eq!(lists.of_cell(Ijk([5, 0, 1])), Some(&[7][..]));
-    assert_eq!(lists.of_cell(Ijk([31, 7, 7])), Some(&[1, 2, 3][..]));
-    assert_eq!(lists.of_cell(Ijk([0, 0, 0])), None);
-    assert_eq!(lists.of_cell(Ijk([8, 0, 0])), None);
-    assert_eq!(lists.at([0.7, 0.6, 1.9]), Some(&[5, 6][..]));
-    assert_eq!(lists.at([f64::NAN, 0.0, f64::INFINITY]), None);
+    let lists = CandidateLists::new(Lattice { voxel: 0.5 }, parts);
+    let named = |near: Option<Candidates>| -> Option<Vec<u32>> {
+        near.map(|near| near.entries.iter().map(|entry| entry.position).collect())
+    };
+    // The nearest to the centre comes first.
+    assert_eq!(named(lists.of_cell(Ijk([1, 1, 3]))), Some(vec![5, 6]));
+    assert_eq!(named(lists.of_cell(Ijk([5, 0, 1]))), Some(vec![7]));
+    assert_eq!(named(lists.of_cell(Ijk([31, 7, 7]))), Some(vec![1, 2, 3]));
+    assert_eq!(named(lists.of_cell(Ijk([0, 0, 0]))), None);
+    assert_eq!(named(lists.of_cell(Ijk([8, 0, 0]))), None);
+    assert_eq!(named(lists.at([0.7, 0.6, 1.9])), Some(vec![5, 6]));
+    assert_eq!(named(lists.at([f64::NAN, 0.0, f64::INFINITY])), None);
 }
 
 #[test]

@@ -59,14 +59,6 @@ impl<'m> SignedDistance<'m> {
         self.from_triangle(p, self.ssvh.closest_from(p, guess).triangle)
     }
 
-    /// The signed distance at `p`, whose closest triangle is among those at `positions` of the hierarchy's order.
-    ///
-    /// # Panics
-    /// When there are none.
-    pub fn among(&self, p: DVec3, positions: &[u32]) -> Sample {
-        self.from_triangle(p, self.ssvh.closest_of(positions, p).triangle)
-    }
-
     /// The signed distance at `p` when `triangle` is known to be the closest.
     pub fn from_triangle(&self, p: DVec3, triangle: u32) -> Sample {
         let ClosestPoint { point, distance_squared, feature } = self.ssvh.triangle(triangle).closest(p);

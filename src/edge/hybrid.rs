@@ -5,6 +5,7 @@
 use super::shared::shared_triangle;
 use super::statistics::{COUNTED_SUBDIVISIONS, EdgeStatistics};
 use super::{Crossing, analytic};
+use crate::candidates::Candidates;
 use crate::distance::{Sample, SignedDistance};
 use glam::DVec3;
 
@@ -24,8 +25,8 @@ pub(super) struct GridEdge<'a> {
     pub(super) outside: DVec3,
     /// A triangle near each end, exact if `known`.
     pub(super) triangles: [NodeTriangle; 2],
-    /// Positions in the hierarchy of the triangles that can be closest to a point of the edge, where they are known.
-    pub(super) candidates: Option<&'a [u32]>,
+    /// The triangles that can be closest to a point of the edge, where they are known.
+    pub(super) candidates: Option<Candidates<'a>>,
     /// How it runs along its axis.
     pub(super) direction: Direction,
     /// A triangle near it, if one is known.
@@ -230,7 +231,10 @@ impl Solver<'_> {
 
     fn ask(&self, edge: &GridEdge, p: DVec3, guess: u32) -> Sample {
         match edge.candidates {
-            Some(candidates) => self.distance.among(p, candidates),
+            Some(candidates) => {
+                let hit = candidates.closest(self.distance.ssvh(), p);
+                self.distance.from_triangle(p, hit.triangle)
+            }
             None => self.distance.at(p, guess),
         }
     }

@@ -197,7 +197,7 @@ impl LeafSolver<'_> {
                 let mut roots = [unsolved; 8];
                 match near {
                     Some(near) => {
-                        self.solver.follow_together(&together, near, &mut statistics, &mut roots);
+                        self.solver.follow_together(&together, &near, &mut statistics, &mut roots);
                     }
                     None => {
                         for (edge, root) in together.iter().zip(&mut roots) {

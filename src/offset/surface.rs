@@ -36,7 +36,10 @@ impl Surface for OffsetSurface<'_> {
         let near = self.lists.and_then(|lists| lists.at(p));
         let p = DVec3::from(p);
         let sample = match near {
-            Some(near) => self.distance.among(p, near),
+            Some(near) => {
+                let hit = near.closest(self.distance.ssvh(), p);
+                self.distance.from_triangle(p, hit.triangle)
+            }
             None => self.distance.at(p, *hint),
         };
         *hint = sample.triangle;

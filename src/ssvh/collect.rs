@@ -22,27 +22,29 @@ impl Ssvh {
         &self.triangles[position as usize]
     }
 
-    /// The closest to `p` of the triangles at `positions`, as [`closest`](Self::closest) finds it among all.
+    /// The mesh number of the triangle at a position of the hierarchy's order.
+    #[inline]
+    pub fn id_at(&self, position: u32) -> u32 {
+        self.ids[position as usize]
+    }
+
+    /// The triangle at a position of the hierarchy's order, with its squared distance from `p`.
+    #[inline]
+    pub fn hit(&self, position: u32, p: DVec3) -> Hit {
+        Hit {
+            triangle: self.id_at(position),
+            distance_squared: self.triangle_at(position).distance_squared(p),
+        }
+    }
+
+    /// The closest to eight points of the triangles at `positions`, as [`closest`](Self::closest) finds it among all.
     ///
     /// # Panics
     /// When there are none.
-    pub fn closest_of(&self, positions: &[u32], p: DVec3) -> Hit {
-        let hit = |&position: &u32| Hit {
-            triangle: self.ids[position as usize],
-            distance_squared: self.triangles[position as usize].distance_squared(p),
-        };
-        let nearer = |a: Hit, b: Hit| if b.before(&a) { b } else { a };
-        positions.iter().map(hit).reduce(nearer).expect("a list of triangles")
-    }
-
-    /// The same for the first `count` of eight points; what is returned for others means nothing.
-    ///
-    /// # Panics
-    /// When there are no triangles.
-    pub fn closest_of_to_eight(&self, positions: &[u32], points: &[DVec3; 8], count: usize) -> [Hit; 8] {
+    pub fn closest_of_to_eight(&self, positions: &[u32], points: &[DVec3; 8]) -> [Hit; 8] {
         assert!(!positions.is_empty(), "a list of triangles");
         let points = [points.map(|p| p.x), points.map(|p| p.y), points.map(|p| p.z)];
-        in_lanes(ClosestToEight { ssvh: self, positions, points: &points, count })
+        in_lanes(ClosestToEight { ssvh: self, positions, points: &points })
     }
 }
 
@@ -51,7 +53,6 @@ struct ClosestToEight<'a> {
     ssvh: &'a Ssvh,
     positions: &'a [u32],
     points: &'a [[f64; 8]; 3],
-    count: usize,
 }
 
 impl WithSimd for ClosestToEight<'_> {
@@ -59,14 +60,14 @@ impl WithSimd for ClosestToEight<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [Hit; 8] {
-        let ClosestToEight { ssvh, positions, points, count } = self;
+        let ClosestToEight { ssvh, positions, points } = self;
         let mut squared = [f64::INFINITY; 8];
         // All 32-bit numbers are numbers of 64-bit floats.
         let mut ids = [f64::INFINITY; 8];
         for &position in positions {
             let triangle = ssvh.triangles[position as usize].in_lanes(simd);
             let id = F64s::splat(simd, f64::from(ssvh.ids[position as usize]));
-            for vector in 0..count.div_ceil(F64s::<S>::COUNT) {
+            for vector in 0..8 / F64s::<S>::COUNT {
                 let found = triangle.distances_squared(simd, P64s::load(simd, points, vector));
                 let (nearest, triangles) =
                     (F64s::load(simd, &squared, vector), F64s::load(simd, &ids, vector));

@@ -18,7 +18,7 @@ pub struct Hit {
 impl Hit {
     /// Whether this hit comes before `other`: nearer, or as near with the lower number.
     #[inline(always)]
-    pub(super) fn before(&self, other: &Hit) -> bool {
+    pub fn before(&self, other: &Hit) -> bool {
         self.distance_squared < other.distance_squared
             || (self.distance_squared == other.distance_squared && self.triangle < other.triangle)
     }

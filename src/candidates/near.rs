@@ -1,0 +1,163 @@
+//! The list of a block, with bounds: most of its triangles are passed over for most of its points.
+
+use crate::geom::lanes::{F32s, F64s, P32s, P64s, in_lanes};
+use crate::ssvh::{Hit, Ssvh};
+use glam::{DVec3, Vec3};
+use pulp::{Simd, WithSimd};
+
+/// How near a triangle comes to the points around the centre of a block's nodes: at c + x at least `low` + `direction` . x,
+/// since it lies beyond the plane through its closest point. In voxels.
+#[derive(Clone, Copy, Debug)]
+pub struct PlaneBound {
+    /// At the centre.
+    pub low: f32,
+    /// The unit vector from the triangle.
+    pub direction: [f32; 3],
+}
+
+/// A triangle of a list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Entry {
+    /// Its position in the hierarchy.
+    pub position: u32,
+    /// Its bound: 8 bits each for the direction in units of 1 / [`DIRECTIONS`], and for how far the bound at the centre
+    /// is above the base of its list in units of 1 / [`STEPS`].
+    packed: [u8; 4],
+}
+
+/// Steps of a direction's coordinates. As many as fit.
+const DIRECTIONS: f32 = 127.0;
+
+/// Steps of a voxel: 8 voxels fit, three times what a list of this extent has.
+const STEPS: f32 = 32.0;
+
+/// The largest sum of the coordinates, in size, of a point in the cells of a block of 2^3 nodes, from the centre of the
+/// nodes, in voxels.
+const FARTHEST: f32 = 4.5;
+
+/// What rounding of the direction takes from a bound at most, with a little for the sums.
+const LOSS: f32 = FARTHEST * 0.5 / DIRECTIONS + 1e-4;
+
+/// No bound is below this: distances are not negative, and the direction adds at most the length of a diagonal.
+const LOWEST: f32 = -FARTHEST;
+
+impl Entry {
+    /// `base` is at most the bound at the centre, as [`base`] gives it.
+    pub fn new(position: u32, bound: PlaneBound, base: f32) -> Entry {
+        // Casting saturates, and rounds down.
+        let [x, y, z] = bound.direction.map(|d| (d * DIRECTIONS + (DIRECTIONS + 0.5)) as u8);
+        let above = ((bound.low.max(LOWEST) - base) * STEPS) as u8;
+        Entry { position, packed: [x, y, z, above] }
+    }
+
+    #[inline(always)]
+    fn low(self, base: f32) -> f32 {
+        base + f32::from(self.packed[3]) * (1.0 / STEPS)
+    }
+
+    #[inline(always)]
+    fn direction(self) -> [f32; 3] {
+        let [x, y, z, _] = self.packed;
+        [x, y, z].map(|d| f32::from(d) * (1.0 / DIRECTIONS) - 1.0)
+    }
+}
+
+/// The base of a list with the given bounds.
+pub(super) fn base(bounds: impl Iterator<Item = PlaneBound>) -> f32 {
+    bounds.fold(f32::INFINITY, |base, bound| base.min(bound.low.max(LOWEST)))
+}
+
+/// The triangles that can be closest to a point of a block or of the cells at its nodes.
+#[derive(Clone, Copy, Debug)]
+pub struct Candidates<'a> {
+    pub(super) entries: &'a [Entry],
+    pub(super) base: f32,
+    /// World position of the centre of the block's nodes.
+    pub(super) centre: DVec3,
+    pub(super) voxel: f64,
+}
+
+impl Candidates<'_> {
+    /// The closest triangle to `p`, a point of the block, as [`Ssvh::closest`] finds it among all.
+    ///
+    /// # Panics
+    /// When `ssvh` is not the hierarchy that the list was taken from.
+    pub fn closest(&self, ssvh: &Ssvh, p: DVec3) -> Hit {
+        let scale = 1.0 / self.voxel;
+        let x = ((p - self.centre) * scale).as_vec3();
+        // The first one is the nearest to the centre.
+        let mut best = ssvh.hit(self.entries[0].position, p);
+        let limit = |hit: &Hit| ((hit.distance_squared.sqrt() * scale) as f32).next_up() + LOSS - self.base;
+        let mut most = limit(&best);
+        for &entry in &self.entries[1..] {
+            let bound = entry.low(0.0) + Vec3::from(entry.direction()).dot(x);
+            if bound > most {
+                continue;
+            }
+            let hit = ssvh.hit(entry.position, p);
+            if hit.before(&best) {
+                best = hit;
+                most = limit(&best);
+            }
+        }
+        best
+    }
+
+    /// The same for the first `count` of eight points; what is returned for others means nothing.
+    pub fn closest_to_eight(&self, ssvh: &Ssvh, points: &[DVec3; 8], count: usize) -> [Hit; 8] {
+        let exact = [points.map(|p| p.x), points.map(|p| p.y), points.map(|p| p.z)];
+        let near = points.map(|p| ((p - self.centre) / self.voxel).as_vec3());
+        let near = [near.map(|p| p.x), near.map(|p| p.y), near.map(|p| p.z)];
+        in_lanes(ClosestToEight { candidates: self, ssvh, exact: &exact, near: &near, count })
+    }
+}
+
+struct ClosestToEight<'a> {
+    candidates: &'a Candidates<'a>,
+    ssvh: &'a Ssvh,
+    exact: &'a [[f64; 8]; 3],
+    near: &'a [[f32; 8]; 3],
+    count: usize,
+}
+
+impl WithSimd for ClosestToEight<'_> {
+    type Output = [Hit; 8];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> [Hit; 8] {
+        let ClosestToEight { candidates: &Candidates { entries, base, voxel, .. }, ssvh, exact, near, count } =
+            self;
+        let mut squared = [f64::INFINITY; 8];
+        // All 32-bit numbers are numbers of 64-bit floats.
+        let mut ids = [f64::INFINITY; 8];
+        let mut limits = [f32::INFINITY; 8];
+        let scale = 1.0 / voxel;
+        for &entry in entries {
+            let (low, direction) = (F32s::splat(simd, entry.low(0.0)), P32s::splat(simd, entry.direction()));
+            let mut matters = false;
+            for vector in 0..count.div_ceil(F32s::<S>::COUNT) {
+                let bound = low + direction.dot(P32s::load(simd, near, vector));
+                matters |= bound.at_most(F32s::load(simd, &limits, vector)).any();
+            }
+            if !matters {
+                continue;
+            }
+            let triangle = ssvh.triangle_at(entry.position).in_lanes(simd);
+            let id = F64s::splat(simd, f64::from(ssvh.id_at(entry.position)));
+            for vector in 0..count.div_ceil(F64s::<S>::COUNT) {
+                let found = triangle.distances_squared(simd, P64s::load(simd, exact, vector));
+                let (nearest, triangles) =
+                    (F64s::load(simd, &squared, vector), F64s::load(simd, &ids, vector));
+                let before = found.less(nearest) | (found.at_most(nearest) & id.less(triangles));
+                before.select(found, nearest).store(&mut squared, vector);
+                before.select(id, triangles).store(&mut ids, vector);
+            }
+            for (limit, squared) in limits.iter_mut().zip(&squared) {
+                *limit = ((squared.sqrt() * scale) as f32).next_up() + LOSS - base;
+            }
+            // Those that nobody asks for keep nothing.
+            limits[count..].fill(f32::NEG_INFINITY);
+        }
+        std::array::from_fn(|i| Hit { triangle: ids[i] as u32, distance_squared: squared[i] })
+    }
+}

@@ -1,0 +1,105 @@
+//! A faster way to the same roots: solve on one triangle, ask at the root which triangle is closest there, and go on with
+//! that one, until it is the one that was solved for.
+//!
+//! The hybrid solver ([`hybrid`](super::hybrid)) evaluates both ends of an edge and halves it when their triangles do not
+//! do; here every question is asked where one triangle has the root, which is where the whole mesh has it most of the
+//! time. Where that leads nowhere, the hybrid solver takes over.
+
+use super::analytic;
+use super::hybrid::{End, GridEdge, NodeTriangle, Root, SHORTEST, Solver};
+use super::statistics::EdgeStatistics;
+use crate::candidates::Candidates;
+use glam::DVec3;
+
+/// Triangles that are followed before the hybrid solver takes over. More than five have not been seen on scanned models.
+const MOST: usize = 8;
+
+/// Where one triangle alone would have the root.
+#[derive(Clone, Copy)]
+struct Proposal {
+    /// Position between the inside end (0) and the outside end (1).
+    t: f64,
+    triangle: u32,
+}
+
+impl Solver<'_> {
+    /// The intersection of `edge`.
+    pub(super) fn follow(&self, edge: &GridEdge, statistics: &mut EdgeStatistics) -> Root {
+        let tried = self.first(edge).map(|p| self.end(edge, p.t, p.triangle, statistics));
+        self.follow_from(edge, tried, statistics)
+    }
+
+    /// The intersections of up to eight edges that have the candidates `near` in common, each as
+    /// [`follow`](Self::follow) finds it. What they try first is verified together.
+    pub(super) fn follow_together(
+        &self,
+        edges: &[GridEdge],
+        near: &Candidates<'_>,
+        statistics: &mut EdgeStatistics,
+        roots: &mut [Root; 8],
+    ) {
+        let mut points = [DVec3::ZERO; 8];
+        let mut positions = [None; 8];
+        let mut proposed = 0;
+        for (edge, position) in edges.iter().zip(&mut positions) {
+            if let Some(Proposal { t, .. }) = self.first(edge) {
+                points[proposed] = self.at(edge, t);
+                *position = Some(t);
+                proposed += 1;
+            }
+        }
+        // Lanes that are left over repeat one that is used.
+        let used = points[0];
+        points[proposed..].fill(used);
+        statistics.queries += proposed as u64;
+        let ssvh = self.distance.ssvh();
+        let hits = (proposed > 0).then(|| near.closest_to_eight(ssvh, &points, proposed));
+        let mut answers = points.iter().zip(hits.iter().flatten());
+        for ((edge, position), root) in edges.iter().zip(positions).zip(roots) {
+            let tried = position.and_then(|t| {
+                let (&p, hit) = answers.next()?;
+                Some(End { t, sample: self.distance.from_triangle(p, hit.triangle) })
+            });
+            *root = self.follow_from(edge, tried, statistics);
+        }
+    }
+
+    /// Where the triangle of one end has the root.
+    fn first(&self, edge: &GridEdge) -> Option<Proposal> {
+        edge.triangles.into_iter().find_map(|triangle| {
+            let (NodeTriangle::Known(triangle) | NodeTriangle::Guess(triangle)) = triangle;
+            let t = self.root_on(edge, triangle, [0.0, 1.0])?;
+            Some(Proposal { t, triangle })
+        })
+    }
+
+    /// Where `triangle` has the root between two positions.
+    fn root_on(&self, edge: &GridEdge, triangle: u32, [low, high]: [f64; 2]) -> Option<f64> {
+        let triangle = self.distance.ssvh().triangle(triangle);
+        let s = analytic::root(triangle, self.at(edge, low), self.at(edge, high), self.r)?;
+        Some(low + s * (high - low))
+    }
+
+    fn follow_from(&self, edge: &GridEdge, mut tried: Option<End>, statistics: &mut EdgeStatistics) -> Root {
+        statistics.intersected += 1;
+        let (mut low, mut high) = (0.0, 1.0);
+        for attempts in 0..MOST {
+            let Some(end) = tried else { break };
+            if self.is_root(&end) {
+                match statistics.by_subdivision.get_mut(attempts) {
+                    Some(count) => *count += 1,
+                    None => statistics.bisected += 1,
+                }
+                return self.finish(edge, end);
+            }
+            *(if self.phi(&end) < 0.0 { &mut low } else { &mut high }) = end.t;
+            if high - low < SHORTEST {
+                break;
+            }
+            let triangle = end.sample.triangle;
+            let t = self.root_on(edge, triangle, [low, high]);
+            tried = t.map(|t| self.end(edge, t, triangle, statistics));
+        }
+        self.halve(edge, statistics)
+    }
+}
