@@ -3,7 +3,7 @@
 use super::LeafBatch;
 use super::build::Worker;
 use super::leaf::{Fate, Leaf};
-use crate::candidates::{BlockLists, Extent, Narrowing};
+use crate::candidates::{BlockLists, Narrowing};
 use crate::filter::{Block, FilterStatistics};
 use crate::lattice::{Ijk, LEAF_DIM};
 use glam::DVec3;
@@ -82,29 +82,26 @@ impl Worker<'_> {
             }
             work.statistics.octree_queries_valid += 1;
             let side = side.or_else(|| self.side_around(half, signed));
+            work.narrowing.narrow(depth, n, half.side);
+            work.statistics.lists[depth + 1] += work.narrowing.count(depth + 1) as u64;
             if half.side > 2 {
-                work.narrowing.narrow(depth, n, half.side, Extent::Cells);
-                work.statistics.lists[depth + 1] += work.narrowing.count(depth + 1) as u64;
                 self.halves(depth + 1, half, side, work);
                 continue;
             }
-            work.narrowing.narrow(depth, n, half.side, Extent::Nodes);
-            work.statistics.lists[depth + 1] += work.narrowing.count(depth + 1) as u64;
-            let valid = self.nodes_by_list(depth + 1, half, side, work);
-            // An edge that the surface crosses has valid ends.
-            if valid > 0 {
-                work.narrowing.narrow(depth, n, half.side, Extent::Cells);
-                work.lists.push(half.origin, work.narrowing.bounded(depth, n));
+            work.lists.push(half.origin, work.narrowing.bounded(depth, n));
+            // An edge that the surface crosses has valid ends; other blocks need no list.
+            if self.nodes_by_list(half, side, work) == 0 {
+                work.lists.drop_block();
             }
         }
     }
 
-    /// Evaluates the eight nodes of a block of side 2, and returns how many of them are valid.
-    fn nodes_by_list(&self, depth: usize, block: Block, side: Option<f64>, work: &mut Work<'_>) -> u64 {
+    /// Evaluates the eight nodes of a block of side 2, whose list was added last, and returns how many of them are valid.
+    fn nodes_by_list(&self, block: Block, side: Option<f64>, work: &mut Work<'_>) -> u64 {
         let nodes = block.children().map(|b| b.origin);
         let points = nodes.map(|node| DVec3::from(self.filter.lattice.world_from_index(node)));
         let ssvh = self.filter.distance.ssvh();
-        let hits = ssvh.closest_of_to_eight(work.narrowing.list(depth), &points);
+        let hits = work.lists.last_block(block, self.filter.lattice).closest_to_eight(ssvh, &points, 8);
         self.set_nodes(&nodes, &points, &hits, side, &mut work.leaf, work.statistics)
     }
 }

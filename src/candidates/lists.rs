@@ -2,8 +2,8 @@
 
 use super::LeafIndex;
 use super::near::{Candidates, Entry, PlaneBound, base};
+use crate::filter::Block;
 use crate::lattice::{Ijk, Lattice};
-use glam::DVec3;
 
 /// The number of the block of 2^3 nodes that holds a node, in 0..64 within its leaf: the halves of halves of the leaf
 /// in the order of [`Block::children`](crate::filter::Block::children).
@@ -74,6 +74,35 @@ impl BlockLists {
         self.ends.push(self.entries.len());
     }
 
+    /// The list that was added last, which is that of `block`.
+    ///
+    /// # Panics
+    /// When there is none.
+    pub fn last_block(&self, block: Block, lattice: Lattice) -> Candidates<'_> {
+        let last = self.ends.len().checked_sub(1).expect("a block was added");
+        let (entries, base) = self.numbered(last);
+        Candidates { entries, base, centre: block.centre(lattice), voxel: lattice.voxel }
+    }
+
+    /// Forgets the list that was added last to the leaf that was begun last.
+    ///
+    /// # Panics
+    /// When there is none.
+    pub fn drop_block(&mut self) {
+        let leaf = self.leaves.last_mut().expect("a leaf was begun");
+        assert!(leaf.mask != 0, "a block was added");
+        // Blocks come by ascending number.
+        leaf.mask &= !(1 << leaf.mask.ilog2());
+        self.ends.pop();
+        self.bases.pop();
+        self.entries.truncate(self.ends.last().copied().unwrap_or(0));
+    }
+
+    fn numbered(&self, list: usize) -> (&[Entry], f32) {
+        let start = list.checked_sub(1).map_or(0, |before| self.ends[before]);
+        (&self.entries[start..self.ends[list]], self.bases[list])
+    }
+
     #[inline]
     fn list(&self, leaf: usize, node: Ijk) -> Option<(&[Entry], f32)> {
         let Leaf { mask, first } = *self.leaves.get(leaf)?;
@@ -82,8 +111,7 @@ impl BlockLists {
             return None;
         }
         let list = first + (mask & (bit - 1)).count_ones() as usize;
-        let start = list.checked_sub(1).map_or(0, |before| self.ends[before]);
-        Some((&self.entries[start..self.ends[list]], self.bases[list]))
+        Some(self.numbered(list))
     }
 }
 
@@ -121,10 +149,8 @@ impl CandidateLists {
     pub fn of_cell(&self, node: Ijk) -> Option<Candidates<'_>> {
         let (part, leaf) = self.places[self.index.get(node)?];
         let (entries, base) = self.parts[part as usize].list(leaf as usize, node)?;
-        let lowest = Ijk(node.0.map(|x| x & !1));
-        let voxel = self.lattice.voxel;
-        let centre = DVec3::from(self.lattice.world_from_index(lowest)) + 0.5 * voxel;
-        Some(Candidates { entries, base, centre, voxel })
+        let block = Block { origin: Ijk(node.0.map(|x| x & !1)), side: 2 };
+        Some(Candidates { entries, base, centre: block.centre(self.lattice), voxel: self.lattice.voxel })
     }
 
     /// The same for a point.

@@ -26,5 +26,5 @@ mod tests;
 
 pub use leaf_index::LeafIndex;
 pub use lists::{BlockLists, CandidateLists, block_in_leaf};
-pub use narrowing::{EightPoints, Extent, Narrowing, Nearest};
+pub use narrowing::{EightPoints, Narrowing, Nearest};
 pub use near::{Candidates, PlaneBound};

@@ -65,7 +65,7 @@ impl Narrowing {
     /// Collects the candidates of a leaf from the hierarchy. `q` is a point of the mesh near the leaf.
     pub fn start(&mut self, ssvh: &Ssvh, lattice: Lattice, leaf: Block, q: DVec3) {
         let centre = leaf.centre(lattice);
-        let [x, y, z] = corners(leaf.side, Extent::Cells).map(|lane| lane.map(f64::from));
+        let [x, y, z] = corners(leaf.side).map(|lane| lane.map(f64::from));
         let corners = std::array::from_fn(|n| centre + lattice.voxel * DVec3::new(x[n], y[n], z[n]));
         let limits = corners.map(|c: DVec3| (c - q).length());
         self.positions.clear();
@@ -95,11 +95,11 @@ impl Narrowing {
     }
 
     /// Narrows the measured list of `depth` to half number `n`, which has `side` nodes along an axis: the list of
-    /// `depth` + 1, for all points of its `extent`.
-    pub fn narrow(&mut self, depth: usize, n: usize, side: i32, extent: Extent) {
+    /// `depth` + 1, for all points from the half's first node to one voxel beyond its last along each axis.
+    pub fn narrow(&mut self, depth: usize, n: usize, side: i32) {
         let [.., parent, child] = &mut self.levels[..depth + 2] else { unreachable!("two levels") };
         child.list.clear();
-        let corners = corners(side, extent);
+        let corners = corners(side);
         let kept = &mut child.list;
         in_lanes(Narrow { parent, n, corners: &corners, slack: self.slack, kept });
     }
@@ -131,22 +131,9 @@ impl Narrowing {
     }
 }
 
-/// The part of space that a list is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
-    /// The nodes of a block, and what is between them.
-    Nodes,
-    /// The cells whose lowest nodes are those of the block: one voxel more along each axis.
-    Cells,
-}
-
-/// The corners of the box of `side` nodes along an axis, or of the cells at them, in voxels from the centre of the nodes.
-fn corners(side: i32, extent: Extent) -> EightPoints {
-    let high = match extent {
-        Extent::Nodes => side - 1,
-        Extent::Cells => side + 1,
-    };
-    let ends = [0.5 * (1 - side) as f32, 0.5 * high as f32];
+/// The corners of the box of `side` nodes along an axis and the cells at them, in voxels from the centre of the nodes.
+fn corners(side: i32) -> EightPoints {
+    let ends = [0.5 * (1 - side) as f32, 0.5 * (1 + side) as f32];
     std::array::from_fn(|axis| std::array::from_fn(|n| ends[n >> (2 - axis) & 1]))
 }
 

@@ -19,16 +19,12 @@ fn soup(corners: &[[[f64; 3]; 3]]) -> TriMesh {
 fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]) -> [usize; 3] {
     let ssvh = Ssvh::new(mesh);
     let mut counts = [0; 3];
-    let mut check = |narrowing: &mut Narrowing, depth: usize, block: Block, extent: Extent| {
+    let mut check = |narrowing: &mut Narrowing, depth: usize, block: Block| {
         counts[depth] += narrowing.count(depth);
-        let high = match extent {
-            Extent::Nodes => block.side - 1,
-            Extent::Cells => block.side,
-        };
         let list = narrowing.list(depth).to_vec();
         for share in shares {
             let node = DVec3::from(block.origin.0.map(f64::from));
-            let p = lattice.voxel * (node + f64::from(high) * DVec3::from(*share));
+            let p = lattice.voxel * (node + f64::from(block.side) * DVec3::from(*share));
             let eight = ssvh.closest_of_to_eight(&list, &[p; 8]);
             assert!(eight.iter().all(|hit| *hit == ssvh.closest(p)), "{block:?} {p}");
         }
@@ -37,7 +33,7 @@ fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]
     let q = ssvh.triangle(ssvh.closest(leaf.centre(lattice)).triangle).closest(leaf.centre(lattice)).point;
     let mut narrowing = Narrowing::default();
     narrowing.start(&ssvh, lattice, leaf, q);
-    check(&mut narrowing, 0, leaf, Extent::Cells);
+    check(&mut narrowing, 0, leaf);
     let centres = |block: Block| {
         let halves = block.children();
         let side = halves[0].side;
@@ -48,18 +44,16 @@ fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]
     };
     narrowing.measure(0, &centres(leaf));
     for (n, half) in leaf.children().into_iter().enumerate() {
-        narrowing.narrow(0, n, 4, Extent::Cells);
-        check(&mut narrowing, 1, half, Extent::Cells);
+        narrowing.narrow(0, n, 4);
+        check(&mut narrowing, 1, half);
         narrowing.measure(1, &centres(half));
         for (n, quarter) in half.children().into_iter().enumerate() {
             let distance = f64::from(narrowing.nearest(1, n).distance) * lattice.voxel;
             let exact = ssvh.closest(quarter.centre(lattice)).distance_squared.sqrt();
             let error = f64::from(narrowing.nearest(1, n).error) * lattice.voxel;
             assert!((distance - exact).abs() <= error, "{distance} {exact} {error}");
-            for extent in [Extent::Nodes, Extent::Cells] {
-                narrowing.narrow(1, n, 2, extent);
-                check(&mut narrowing, 2, quarter, extent);
-            }
+            narrowing.narrow(1, n, 2);
+            check(&mut narrowing, 2, quarter);
             let mut lists = BlockLists::default();
             lists.begin_leaf();
             lists.push(quarter.origin, narrowing.bounded(1, n));
@@ -103,7 +97,7 @@ fn lists_name_the_closest_triangle_of_the_hierarchy() {
     for (voxel, origin) in [(0.05, [8, -8, 16]), (0.01, [0, 40, -96]), (0.2, [-8, 0, 0]), (0.05, [160, 8, 8])]
     {
         let [leaf, halves, quarters] = check_leaf(&mesh, Lattice { voxel }, Ijk(origin), &shares(12));
-        assert!(leaf > 0 && halves <= 8 * leaf && quarters <= 16 * halves, "{leaf} {halves} {quarters}");
+        assert!(leaf > 0 && halves <= 8 * leaf && quarters <= 8 * halves, "{leaf} {halves} {quarters}");
     }
 }
 
@@ -111,8 +105,7 @@ fn lists_name_the_closest_triangle_of_the_hierarchy() {
 fn lists_get_shorter() {
     let mesh = shapes::carved_cube(48);
     let [leaf, halves, quarters] = check_leaf(&mesh, Lattice { voxel: 0.01 }, Ijk([48, 16, -8]), &shares(2));
-    // Of nodes and of cells each.
-    assert!(halves < 8 * leaf / 2 && quarters < 16 * halves / 2, "{leaf} {halves} {quarters}");
+    assert!(halves < 8 * leaf / 2 && quarters < 8 * halves / 2, "{leaf} {halves} {quarters}");
     assert!(leaf < mesh.triangles.len() / 4, "{leaf} of {}", mesh.triangles.len());
 }
 
@@ -161,6 +154,8 @@ fn lists_are_kept_by_block() {
     let mut lists = BlockLists::default();
     lists.begin_leaf();
     lists.push(Ijk([0, 0, 2]), list(&[6, 5]).into_iter());
+    lists.push(Ijk([2, 2, 2]), list(&[8, 8]).into_iter());
+    lists.drop_block();
     lists.push(Ijk([4, 0, 0]), list(&[7]).into_iter());
     lists.begin_leaf();
     lists.push(Ijk([8, 0, 0]), list(&[9]).into_iter());
