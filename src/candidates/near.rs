@@ -38,6 +38,9 @@ const FARTHEST: f32 = 4.5;
 /// What rounding of the direction takes from a bound at most, with a little for the sums.
 const LOSS: f32 = FARTHEST * 0.5 / DIRECTIONS + 1e-4;
 
+/// What a distance is multiplied with, so that it is not below the exact one after a few roundings.
+const ROUNDED: f32 = 1.0 + 4.0 * f32::EPSILON;
+
 /// No bound is below this: distances are not negative, and the direction adds at most the length of a diagonal.
 const LOWEST: f32 = -FARTHEST;
 
@@ -131,7 +134,7 @@ impl WithSimd for ClosestToEight<'_> {
         // All 32-bit numbers are numbers of 64-bit floats.
         let mut ids = [f64::INFINITY; 8];
         let mut limits = [f32::INFINITY; 8];
-        let scale = 1.0 / voxel;
+        let scale = 1.0 / (voxel * voxel);
         for &entry in entries {
             let (low, direction) = (F32s::splat(simd, entry.low(0.0)), P32s::splat(simd, entry.direction()));
             let mut matters = false;
@@ -152,8 +155,14 @@ impl WithSimd for ClosestToEight<'_> {
                 before.select(found, nearest).store(&mut squared, vector);
                 before.select(id, triangles).store(&mut ids, vector);
             }
-            for (limit, squared) in limits.iter_mut().zip(&squared) {
-                *limit = ((squared.sqrt() * scale) as f32).next_up() + LOSS - base;
+            let mut scaled = [0.0; 8];
+            for (scaled, squared) in scaled.iter_mut().zip(&squared) {
+                *scaled = (squared * scale) as f32;
+            }
+            for vector in 0..count.div_ceil(F32s::<S>::COUNT) {
+                let distance = F32s::load(simd, &scaled, vector).sqrt();
+                (distance * F32s::splat(simd, ROUNDED) + F32s::splat(simd, LOSS - base))
+                    .store(&mut limits, vector);
             }
             // Those that nobody asks for keep nothing.
             limits[count..].fill(f32::NEG_INFINITY);
