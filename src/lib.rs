@@ -14,6 +14,7 @@ pub mod candidates;
 pub mod band;
 pub mod vdb;
 pub mod edge;
+pub mod unseen;
 pub mod contour;
 pub mod offset;
 pub mod verify;

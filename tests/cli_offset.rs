@@ -86,7 +86,7 @@ fn the_statistics_file_has_the_fields_of_the_contract() {
         keys(&stats),
         [
             "exocarp", "command", "input", "settings", "phases", "wall", "peak_rss", "filter", "edges",
-            "contour", "vdb"
+            "contour", "unseen", "halvings", "vdb"
         ]
     );
     let has = |part: &str, fields: &[&str]| {
@@ -276,4 +276,31 @@ fn a_tolerance_refines_the_mesh_and_what_is_left_is_counted() {
     assert!(fine["beyond_tolerance"].as_u64().unwrap() < fine["triangles"].as_u64().unwrap() / 100);
     assert!(fine_error < 0.025 && coarse_error > 0.03, "{fine_error} {coarse_error}");
     exocarp(&["offset", &input, "-d", "1", "-o", "x.ply", "--tolerance", "0"]).fails_with(2);
+}
+
+#[test]
+fn what_the_lattice_cannot_see_is_said_and_resolved() {
+    let dir = tempfile::tempdir().unwrap();
+    let input = model(dir.path(), "bracket", "6");
+    let (output, stats) = (dir.path().join("out.ply"), dir.path().join("out.json"));
+    let [output, stats] = [&output, &stats].map(|p| p.to_str().unwrap());
+    let gaps = |more: &[&str]| {
+        // Its two holes shrink to less than a voxel.
+        let mut arguments =
+            vec!["offset", &input, "-d", "0.2", "--voxel", "0.1", "-o", output, "--stats", stats];
+        arguments.extend(more);
+        let outcome = exocarp(&arguments);
+        assert_eq!(outcome.code, 0, "{outcome:?}");
+        (json(Path::new(stats)), outcome.stderr)
+    };
+    let (coarse, warning) = gaps(&[]);
+    assert_eq!(coarse["unseen"]["gaps"], 2, "{}", coarse["unseen"]);
+    assert!(warning.contains("the result lacks 2 gaps thinner than a voxel"), "{warning}");
+    assert!(warning.contains("--resolve"), "{warning}");
+    let (fine, warning) = gaps(&["--resolve"]);
+    assert_eq!((&fine["unseen"]["gaps"], warning.contains("lacks")), (&0.into(), false), "{warning}");
+    assert!(fine["halvings"].as_u64().unwrap() > 0);
+    let (_, quiet) = gaps(&["--quiet"]);
+    assert!(quiet.is_empty(), "{quiet}");
+    exocarp(&["offset", &input, "-d", "0.2", "-o", output, "--resolve=11"]).fails_with(2);
 }

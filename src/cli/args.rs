@@ -154,6 +154,10 @@ pub(super) struct OffsetArguments {
     /// Refine the mesh until it is this near to the true offset surface: in model units, or in voxels as 0.05h
     #[arg(long, value_name = "E", value_parser = tolerance, allow_negative_numbers = true)]
     pub tolerance: Option<Tolerance>,
+    /// Halve the voxel size up to N times while parts, sheets or gaps thinner than a voxel are missing
+    #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, default_value_t = 0, default_missing_value = "3")]
+    #[arg(value_parser = clap::value_parser!(u32).range(0..=10), hide_default_value = true)]
+    pub resolve: u32,
     /// Write PLY with 64-bit coordinates
     #[arg(long)]
     pub f64: bool,

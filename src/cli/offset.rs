@@ -9,7 +9,7 @@ use super::session::{Session, Verbosity};
 use super::statistics::{MeshFacts, OffsetFile, Phases};
 use exocarp::io::{self, Coordinates, Format, SaveOptions};
 use exocarp::mesh::{CleanReport, Topology, TriMesh, clean};
-use exocarp::offset::{OffsetResult, OffsetSettings, Precision, VoxelSize, offset};
+use exocarp::offset::{OffsetResult, OffsetSettings, OffsetStatistics, Precision, VoxelSize, offset};
 use exocarp::run::Phase;
 use exocarp::vdb::{self, Band, Compression, VdbError, VdbOptions, VdbPrecision};
 use std::path::Path;
@@ -41,6 +41,8 @@ pub(super) fn run(arguments: &OffsetArguments, session: &Session) -> Result<(), 
         session.warn(&format!("{triangles} could not be brought within the tolerance"));
     }
 
+    warn_of_unseen(&result.statistics, arguments.resolve, session);
+
     let (_, write) = session.phase(Phase::Write, || {
         save_mesh(&result.mesh, &arguments.output, coordinates(arguments.f64), session)?;
         match &arguments.vdb {
@@ -69,6 +71,7 @@ fn settings(arguments: &OffsetArguments, session: &Session) -> Result<OffsetSett
         half_width: if arguments.vdb.is_some() { STORED_HALF_WIDTH } else { 1.0 },
         precision: precision(&arguments.output, arguments.f64)?,
         tolerance: arguments.tolerance,
+        resolve: arguments.resolve,
         max_memory: session.max_memory,
     };
     settings.validate().map_err(exocarp::error::Error::from)?;
@@ -147,6 +150,29 @@ fn warn_of_input(arguments: &OffsetArguments, loaded: &Loaded, session: &Session
              are a guess"
         ));
     }
+}
+
+/// Says what the result lacks.
+fn warn_of_unseen(statistics: &OffsetStatistics, resolve: u32, session: &Session) {
+    let unseen = &statistics.unseen;
+    let Some(first) = unseen.places.first() else { return };
+    let kinds = [
+        (unseen.sheets, "sheet", "sheets"),
+        (unseen.gaps, "gap", "gaps"),
+        (unseen.parts, "small part", "small parts"),
+    ];
+    let kinds = kinds.into_iter().filter(|kind| kind.0 > 0).map(|(n, one, many)| counted(n, one, many));
+    let [x, y, z] = first.at.map(short);
+    let voxel = short(statistics.voxel);
+    let advice = match statistics.halvings {
+        0 if resolve == 0 => "choose a smaller voxel size, or --resolve".to_string(),
+        0 => "a smaller voxel size would not fit".to_string(),
+        n => format!("{} did not suffice", counted(n as usize, "halving", "halvings")),
+    };
+    session.warn(&format!(
+        "the result lacks {} thinner than a voxel of {voxel}, the largest near ({x}, {y}, {z}): {advice}",
+        kinds.collect::<Vec<_>>().join(", ")
+    ));
 }
 
 /// Writes a mesh to where it will be put in place from.

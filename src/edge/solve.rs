@@ -38,6 +38,16 @@ impl NodeTriangles {
         NodeTriangles { slots, ids }
     }
 
+    /// The numbers of a leaf's nodes, -1 where none is known; `None` for a leaf of the ring.
+    pub fn of_leaf(&self, leaf: LeafId) -> Option<&[i32]> {
+        let slot = *self.slots.get(leaf.0 as usize)?;
+        if slot == u32::MAX {
+            return None;
+        }
+        let first = slot as usize * LEAF_SIZE;
+        Some(&self.ids[first..first + LEAF_SIZE])
+    }
+
     fn get(&self, leaf: LeafId, number: usize) -> Option<u32> {
         // Without any ids, all triangles are unknown.
         let slot = *self.slots.get(leaf.0 as usize)?;

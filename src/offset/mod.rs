@@ -9,6 +9,7 @@
 //! for every number of threads.
 
 pub(crate) mod narrow_band;
+mod resolving;
 mod settings;
 mod statistics;
 mod surface;
@@ -21,12 +22,14 @@ pub use settings::{Length, OffsetSettings, SettingsError, SignMode, Tolerance, V
 pub use statistics::{EngineTimes, OffsetStatistics, VdbStatistics};
 pub use unsuitable::{EmptyResult, InputError, MemoryError};
 
-use crate::contour::{ContourSettings, contour};
+use crate::band::BandSettings;
+use crate::contour::contour;
 use crate::distance::SignedDistance;
 use crate::edge::{EdgeNumbers, NearTriangles, solve};
 use crate::error::Error;
 use crate::mesh::{Topology, TriMesh};
 use crate::run::{Phase, RunSettings};
+use crate::unseen;
 use crate::vdb::Band;
 use std::time::Instant;
 use surface::OffsetSurface;
@@ -54,11 +57,9 @@ pub struct OffsetResult {
 /// - [`Error::Contour`], [`Error::TooManyEdges`]: the lattice is too fine for the precision or the indices.
 /// - [`Error::Cancelled`].
 pub fn offset(mesh: &TriMesh, settings: &OffsetSettings, run: &RunSettings) -> Result<OffsetResult, Error> {
-    let mut times = EngineTimes::default();
     let topology = run.install(|| Topology::new(mesh));
     unsuitable::check_input(mesh, &topology, settings.sign)?;
     let band_settings = settings.resolve(mesh)?;
-    let (lattice, r) = (band_settings.lattice, band_settings.r);
     unsuitable::check_memory(mesh, &band_settings, settings.max_memory)?;
 
     let started = Instant::now();
@@ -67,37 +68,44 @@ pub fn offset(mesh: &TriMesh, settings: &OffsetSettings, run: &RunSettings) -> R
         run.install(|| SignedDistance::new(mesh, &topology))
     };
     run.check()?;
-    times.hierarchy = started.elapsed().as_secs_f64();
+    let times = EngineTimes { hierarchy: started.elapsed().as_secs_f64(), ..EngineTimes::default() };
+    resolving::until_seen(&distance, settings, band_settings, times, run)
+}
 
+/// The offset surface on one lattice. `times` is what was spent before.
+fn on_lattice(
+    distance: &SignedDistance,
+    settings: &OffsetSettings,
+    band_settings: &BandSettings,
+    mut times: EngineTimes,
+    run: &RunSettings,
+) -> Result<OffsetResult, Error> {
+    let (lattice, r) = (band_settings.lattice, band_settings.r);
     let started = Instant::now();
-    let (band, lists, filter) = narrow_band::build(&distance, &band_settings, run)?;
-    times.band = started.elapsed().as_secs_f64();
+    let (band, lists, filter) = narrow_band::build(distance, band_settings, run)?;
+    times.band += started.elapsed().as_secs_f64();
 
     let started = Instant::now();
     let (signs, triangles) = narrow_band::read_back(&band, run)?;
     let numbers = run.install(|| EdgeNumbers::new(&signs))?;
     if numbers.is_empty() {
-        return Err(EmptyResult::explain(&distance, &band_settings).into());
+        return Err(EmptyResult::explain(distance, band_settings).into());
     }
     let near = NearTriangles { nodes: triangles, lists: Some(lists) };
-    let (crossings, edges) = solve(&distance, lattice, r, &signs, numbers, &near, run)?;
+    let (crossings, edges) = solve(distance, lattice, r, &signs, numbers, &near, run)?;
+    let suspects = unseen::suspects(distance, r, lattice, &signs, &near, run)?;
     let NearTriangles { lists, .. } = near;
-    times.edges = started.elapsed().as_secs_f64();
+    times.edges += started.elapsed().as_secs_f64();
 
     let started = Instant::now();
-    let tolerance = settings.tolerance.map(|tolerance| match tolerance {
-        Tolerance::Units(t) => t / lattice.voxel,
-        Tolerance::Voxels(t) => t,
-    });
-    let contour_settings =
-        ContourSettings { precision: settings.precision, tolerance, ..ContourSettings::default() };
-    let surface =
-        OffsetSurface { distance: &distance, r, lists: lists.as_ref(), vanishing: 1e-4 * lattice.voxel };
+    let contour_settings = settings.contour(lattice);
+    let surface = OffsetSurface { distance, r, lists: lists.as_ref(), vanishing: 1e-4 * lattice.voxel };
     let (mesh, contour) = contour(&signs, &crossings, lattice, Some(&surface), &contour_settings, run)?;
-    times.contour = started.elapsed().as_secs_f64();
+    let unseen = unseen::confirm(suspects, &mesh, run)?;
+    times.contour += started.elapsed().as_secs_f64();
 
-    let vdb = VdbStatistics::of(&band);
+    let (voxel, vdb) = (lattice.voxel, VdbStatistics::of(&band));
     let statistics =
-        OffsetStatistics { distance: r, voxel: lattice.voxel, times, filter, edges, contour, vdb };
+        OffsetStatistics { distance: r, voxel, times, filter, edges, contour, unseen, halvings: 0, vdb };
     Ok(OffsetResult { mesh, band, statistics })
 }

@@ -1,7 +1,7 @@
 //! What to make: distance, voxel size, sign mode.
 
 use crate::band::BandSettings;
-use crate::contour::Precision;
+use crate::contour::{ContourSettings, Precision};
 use crate::geom::aabb::Aabb;
 use crate::lattice::Lattice;
 use crate::mesh::TriMesh;
@@ -63,6 +63,9 @@ pub struct OffsetSettings {
     /// gives it. What could not be reached is counted in
     /// [`ContourStatistics::beyond_tolerance`](crate::contour::ContourStatistics).
     pub tolerance: Option<Tolerance>,
+    /// How often the voxel size may be halved where the lattice does not see all of the surface
+    /// ([`Unseen`](crate::unseen::Unseen)); 0 leaves it as it is. The whole lattice is refined.
+    pub resolve: u32,
     /// Refuse to start when the work would need more than about this many bytes; `None` for the memory
     /// that the system has available.
     pub max_memory: Option<u64>,
@@ -77,6 +80,7 @@ impl Default for OffsetSettings {
             half_width: 1.0,
             precision: Precision::F32,
             tolerance: None,
+            resolve: 0,
             max_memory: None,
         }
     }
@@ -163,10 +167,28 @@ impl OffsetSettings {
         if !(voxel > 0.0 && voxel.is_finite()) {
             return Err(SettingsError::Voxel(voxel));
         }
+        let band = BandSettings { lattice: Lattice { voxel }, r, half_width: self.half_width };
+        self.check_range(mesh, &band)?;
+        Ok(band)
+    }
+
+    /// Checks that the lattice's indices are in range.
+    pub(super) fn check_range(&self, mesh: &TriMesh, band: &BandSettings) -> Result<(), SettingsError> {
+        let bounds = Aabb::around(mesh.vertices.iter().map(|&v| DVec3::from(v)));
+        let (voxel, r) = (band.lattice.voxel, band.r);
         let farthest = bounds.lo.abs().max(bounds.hi.abs()).max_element() + r.abs() + self.half_width * voxel;
         if farthest / voxel > LARGEST_INDEX {
             return Err(SettingsError::Range { voxel, smallest: farthest / LARGEST_INDEX });
         }
-        Ok(BandSettings { lattice: Lattice { voxel }, r, half_width: self.half_width })
+        Ok(())
+    }
+
+    /// The settings of the contour on a lattice.
+    pub(super) fn contour(&self, lattice: Lattice) -> ContourSettings {
+        let tolerance = self.tolerance.map(|tolerance| match tolerance {
+            Tolerance::Units(t) => t / lattice.voxel,
+            Tolerance::Voxels(t) => t,
+        });
+        ContourSettings { precision: self.precision, tolerance, ..ContourSettings::default() }
     }
 }

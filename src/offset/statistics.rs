@@ -3,6 +3,7 @@
 use crate::contour::ContourStatistics;
 use crate::edge::EdgeStatistics;
 use crate::filter::FilterStatistics;
+use crate::unseen::Unseen;
 use crate::vdb::Band;
 use serde::Serialize;
 
@@ -21,6 +22,10 @@ pub struct OffsetStatistics {
     pub edges: EdgeStatistics,
     /// Cells, polygons, vertices.
     pub contour: ContourStatistics,
+    /// What the lattice could not see.
+    pub unseen: Unseen,
+    /// How often the voxel size was halved to see more.
+    pub halvings: u32,
     /// The band's size.
     pub vdb: VdbStatistics,
 }

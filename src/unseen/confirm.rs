@@ -1,0 +1,145 @@
+//! Which suspects the finished mesh knows: tips of creases beyond the cells that see them are recovered afterwards.
+
+use super::places::Unseen;
+use super::suspects::{Hidden, Suspect, Suspects};
+use crate::candidates::LeafIndex;
+use crate::geom::triangle::Triangle;
+use crate::lattice::{Ijk, LEAF_DIM, Lattice};
+use crate::mesh::TriMesh;
+use crate::run::{Cancelled, RunSettings};
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// A suspect that is on the wrong side of the mesh by less than this, in voxels, is part of its error.
+pub(super) const DEEP: f64 = 0.05;
+
+/// Triangles farther than this from a suspect, in voxels, say nothing of it: the nodes around it do.
+const REACH: f64 = 2.0;
+
+/// Triangles looked at between two looks at the run.
+const CHUNK: usize = 1 << 14;
+
+/// Keeps the suspects that `mesh`, the result, has on the wrong side, and gathers them to places.
+///
+/// # Errors
+/// When the run is cancelled.
+pub fn confirm(suspects: Suspects, mesh: &TriMesh, run: &RunSettings) -> Result<Unseen, Cancelled> {
+    let Suspects { all, lattice: Some(lattice) } = suspects else { return Ok(Unseen::default()) };
+    if all.is_empty() {
+        return Ok(Unseen::default());
+    }
+    let near = NearMesh::new(&all, lattice);
+    let seen = run.install(|| near.look(mesh, run))?;
+    let lost = all.iter().zip(seen).filter(|(suspect, nearest)| nearest.is_lost(suspect, lattice));
+    Ok(Unseen::new(lost.map(|(suspect, _)| *suspect).collect()))
+}
+
+/// The nearest triangle of the mesh to a suspect.
+#[derive(Clone, Copy)]
+struct Nearest {
+    distance: f64,
+    /// The cosine between its normal and the way to the suspect. Of triangles that meet in the closest point, the one
+    /// that looks most at the suspect knows its side.
+    cosine: f64,
+}
+
+impl Nearest {
+    const NONE: Nearest = Nearest { distance: f64::INFINITY, cosine: 0.0 };
+
+    fn is_lost(&self, suspect: &Suspect, lattice: Lattice) -> bool {
+        if self.distance > REACH * lattice.voxel {
+            return true;
+        }
+        let is_wrong = match suspect.hidden {
+            Hidden::Solid => self.cosine > 0.0,
+            Hidden::Air => self.cosine < 0.0,
+        };
+        is_wrong && self.distance > DEEP * lattice.voxel
+    }
+
+    fn nearer(self, other: Nearest, slack: f64) -> Nearest {
+        let as_near = (self.distance - other.distance).abs() <= slack;
+        if as_near && other.cosine.abs() > self.cosine.abs() || !as_near && other.distance < self.distance {
+            other
+        } else {
+            self
+        }
+    }
+}
+
+/// The suspects by leaf of their cells.
+struct NearMesh<'a> {
+    suspects: &'a [Suspect],
+    lattice: Lattice,
+    index: LeafIndex,
+    by_leaf: Vec<Vec<u32>>,
+}
+
+impl<'a> NearMesh<'a> {
+    fn new(suspects: &'a [Suspect], lattice: Lattice) -> NearMesh<'a> {
+        let mut origins: Vec<Ijk> = suspects.iter().map(|s| s.cell.leaf_origin()).collect();
+        origins.sort_unstable();
+        origins.dedup();
+        let index = LeafIndex::new(&origins);
+        let mut by_leaf = vec![Vec::new(); origins.len()];
+        for (suspect, n) in suspects.iter().zip(0..) {
+            by_leaf[index.get(suspect.cell).expect("its own leaf")].push(n);
+        }
+        NearMesh { suspects, lattice, index, by_leaf }
+    }
+
+    /// The nearest triangle within reach of each suspect.
+    fn look(&self, mesh: &TriMesh, run: &RunSettings) -> Result<Vec<Nearest>, Cancelled> {
+        let pairs: Vec<Vec<(u32, Nearest)>> = mesh
+            .triangles
+            .par_chunks(CHUNK)
+            .map(|triangles| {
+                run.check()?;
+                let mut pairs = Vec::new();
+                for &vertices in triangles {
+                    self.triangle(
+                        vertices.map(|v| DVec3::from(mesh.vertices[v as usize])),
+                        vertices,
+                        &mut pairs,
+                    );
+                }
+                Ok(pairs)
+            })
+            .collect::<Result<_, Cancelled>>()?;
+        let mut nearest = vec![Nearest::NONE; self.suspects.len()];
+        let slack = 1e-6 * self.lattice.voxel;
+        for (suspect, found) in pairs.into_iter().flatten() {
+            let own = &mut nearest[suspect as usize];
+            *own = own.nearer(found, slack);
+        }
+        Ok(nearest)
+    }
+
+    fn triangle(&self, corners: [DVec3; 3], vertices: [u32; 3], pairs: &mut Vec<(u32, Nearest)>) {
+        let reach = REACH * self.lattice.voxel;
+        let [a, b, c] = corners;
+        let (lo, hi) = (a.min(b).min(c) - reach, a.max(b).max(c) + reach);
+        let node = |p: DVec3| Ijk((p / self.lattice.voxel).floor().as_ivec3().to_array()).leaf_origin().0;
+        let (first, last) = (node(lo), node(hi));
+        let step = LEAF_DIM as usize;
+        for x in (first[0]..=last[0]).step_by(step) {
+            for y in (first[1]..=last[1]).step_by(step) {
+                for z in (first[2]..=last[2]).step_by(step) {
+                    let Some(leaf) = self.index.get(Ijk([x, y, z])) else { continue };
+                    for &n in &self.by_leaf[leaf] {
+                        let p = self.suspects[n as usize].at;
+                        if p.cmplt(lo).any() || p.cmpgt(hi).any() {
+                            continue;
+                        }
+                        let triangle = Triangle::new(corners, vertices);
+                        let closest = triangle.closest(p);
+                        let distance = closest.distance_squared.sqrt();
+                        let cosine =
+                            (p - closest.point).dot(triangle.normal) / distance.max(f64::MIN_POSITIVE);
+                        pairs.push((n, Nearest { distance, cosine }));
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! Directions, coarsely: which triangles face away from each other.
+
+use crate::ssvh::Ssvh;
+use glam::DVec3;
+
+/// Coordinates of a unit vector within this of zero count as zero. It makes the 26 directions about equally likely.
+const FLAT: f64 = 0.4;
+
+/// A set of directions, a bit for each of 3^3.
+pub(super) type Directions = u32;
+
+/// The direction of each triangle of a mesh, and which directions face away from which.
+pub(super) struct DirectionTable {
+    by_triangle: Vec<u8>,
+    away: [Directions; 27],
+}
+
+impl DirectionTable {
+    pub(super) fn new(ssvh: &Ssvh, triangles: usize) -> DirectionTable {
+        let by_triangle = (0..triangles as u32).map(|t| direction(ssvh.triangle(t).normal)).collect();
+        let away = std::array::from_fn(|a| {
+            (0..27).filter(|&b| vector(a).dot(vector(b)) <= 0.0).fold(0, |set, b| set | 1 << b)
+        });
+        DirectionTable { by_triangle, away }
+    }
+
+    /// The direction of a triangle, as a set.
+    #[inline]
+    pub(super) fn of(&self, triangle: u32) -> Directions {
+        1 << self.by_triangle[triangle as usize]
+    }
+
+    /// Whether two directions of a set are at a right angle or more to each other.
+    #[inline]
+    pub(super) fn disagree(&self, set: Directions) -> bool {
+        let mut rest = set;
+        while rest != 0 {
+            if self.away[rest.trailing_zeros() as usize] & set != 0 {
+                return true;
+            }
+            rest &= rest - 1;
+        }
+        false
+    }
+}
+
+fn direction(normal: DVec3) -> u8 {
+    let digit = |x: f64| if x > FLAT { 2 } else { u8::from(x >= -FLAT) };
+    9 * digit(normal.x) + 3 * digit(normal.y) + digit(normal.z)
+}
+
+/// The middle of a direction. A triangle without a normal has one that is at a right angle to all.
+fn vector(direction: usize) -> DVec3 {
+    DVec3::new((direction / 9) as f64, (direction / 3 % 3) as f64, (direction % 3) as f64) - 1.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::shapes;
+
+    #[test]
+    fn opposite_faces_disagree() {
+        let mesh = (shapes::by_name("box").unwrap().make)(2);
+        let table = DirectionTable::new(&Ssvh::new(&mesh), mesh.triangles.len());
+        let all = (0..mesh.triangles.len() as u32).fold(0, |set, t| set | table.of(t));
+        assert_eq!(all.count_ones(), 6);
+        assert!(table.disagree(all));
+        assert!(!table.disagree(table.of(0)) && !table.disagree(0));
+        assert!(table.disagree(1 << direction(DVec3::X) | 1 << direction(-DVec3::X)));
+        let slant = DVec3::new(1.0, 1.0, 0.0).normalize();
+        assert!(!table.disagree(1 << direction(DVec3::X) | 1 << direction(slant)));
+    }
+}

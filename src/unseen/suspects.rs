@@ -1,0 +1,295 @@
+//! Points between nodes of one sign that have the other one.
+
+use super::directions::{DirectionTable, Directions};
+use crate::band::{LeafId, SignField};
+use crate::candidates::CandidateLists;
+use crate::distance::{Sample, SignedDistance};
+use crate::edge::NearTriangles;
+use crate::lattice::{Axis, Ijk, LEAF_DIM, LEAF_SIZE, Lattice};
+use crate::run::{Cancelled, RunSettings};
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// What is hidden at a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Hidden {
+    /// A piece of the offset solid among outside nodes.
+    Solid,
+    /// A piece of what is around it among inside nodes.
+    Air,
+}
+
+/// Where a point was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Found {
+    /// On an edge that the surface crosses twice.
+    OnEdge,
+    /// In a cell with corners of one sign.
+    InCell,
+}
+
+/// A point whose sign differs from that of the nodes around it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Suspect {
+    pub(super) cell: Ijk,
+    pub(super) at: DVec3,
+    pub(super) hidden: Hidden,
+    pub(super) found: Found,
+    /// How far it is from the surface, in voxels.
+    pub(super) depth: f64,
+}
+
+/// Points that the contour may not know of.
+#[derive(Clone, Debug, Default)]
+pub struct Suspects {
+    pub(super) all: Vec<Suspect>,
+    pub(super) lattice: Option<Lattice>,
+}
+
+/// Questions along one edge: a gap between plane walls takes one, round ones two or three.
+const ALONG_EDGE: usize = 6;
+
+/// Questions in one cell.
+const IN_CELL: usize = 6;
+
+/// Known corners of a cell that is searched: fewer do not tell that there is something between them.
+const KNOWN: usize = 4;
+
+/// Points nearer to the surface than this, in voxels, do not count: rounding.
+const NEGLIGIBLE: f64 = 1e-3;
+
+/// Looks for points between the nodes of `signs` that have the other sign. `near` has the closest triangles of the nodes.
+///
+/// # Errors
+/// When the run is cancelled.
+pub fn suspects(
+    distance: &SignedDistance,
+    r: f64,
+    lattice: Lattice,
+    signs: &SignField,
+    near: &NearTriangles,
+    run: &RunSettings,
+) -> Result<Suspects, Cancelled> {
+    let directions = DirectionTable::new(distance.ssvh(), distance.mesh().triangles.len());
+    let search = Search { distance, r, lattice, signs, near, directions };
+    let leaves: Vec<LeafId> = signs.leaves().collect();
+    let all: Vec<Vec<Suspect>> = run.install(|| {
+        leaves
+            .par_iter()
+            .with_min_len(16)
+            .map(|&leaf| {
+                run.check()?;
+                Ok(search.leaf(leaf))
+            })
+            .collect::<Result<_, Cancelled>>()
+    })?;
+    Ok(Suspects { all: all.into_iter().flatten().collect(), lattice: Some(lattice) })
+}
+
+/// Nodes along the side of a leaf's cells.
+const SIDE: usize = LEAF_DIM as usize + 1;
+
+struct Search<'a> {
+    distance: &'a SignedDistance<'a>,
+    r: f64,
+    lattice: Lattice,
+    signs: &'a SignField,
+    near: &'a NearTriangles,
+    directions: DirectionTable,
+}
+
+/// A corner of a cell whose distance is known.
+#[derive(Clone, Copy)]
+struct Corner {
+    p: DVec3,
+    /// Towards zero from either side: positive, in model units.
+    height: f64,
+    gradient: DVec3,
+    triangle: u32,
+}
+
+impl Search<'_> {
+    fn leaf(&self, leaf: LeafId) -> Vec<Suspect> {
+        let mut found = Vec::new();
+        let Some((triangles, all)) = self.corners(leaf) else { return found };
+        if !self.directions.disagree(all) {
+            return found;
+        }
+        let sets = triangles.map(|t| if t < 0 { 0 } else { self.directions.of(t as u32) });
+        for number in 0..LEAF_SIZE {
+            let [x, y, z] = [number >> 6, number >> 3 & 7, number & 7];
+            let first = (x * SIDE + y) * SIDE + z;
+            let at = |corner: usize| first + CORNERS[corner];
+            let set = (0..8).fold(0, |set, corner| set | sets[at(corner)]);
+            if set.count_ones() > 1 && self.directions.disagree(set) {
+                self.cell(leaf, number, std::array::from_fn(|corner| triangles[at(corner)]), &mut found);
+            }
+        }
+        found
+    }
+
+    /// The closest triangles of the nodes of a leaf and of the next ones along each axis, -1 where none is known, and all
+    /// their directions; `None` when no triangle is known.
+    fn corners(&self, leaf: LeafId) -> Option<([i32; SIDE * SIDE * SIDE], Directions)> {
+        let neighbours: [Option<&[i32]>; 8] = std::array::from_fn(|n| {
+            let delta = [n >> 2 & 1, n >> 1 & 1, n & 1].map(|d| d as i32);
+            self.near.nodes.of_leaf(self.signs.neighbour(leaf, delta)?)
+        });
+        neighbours.iter().any(Option::is_some).then_some(())?;
+        let mut triangles = [-1; SIDE * SIDE * SIDE];
+        let (mut all, mut last) = (0, -1);
+        for (n, triangle) in triangles.iter_mut().enumerate() {
+            let [x, y, z] = [n / (SIDE * SIDE), n / SIDE % SIDE, n % SIDE];
+            let Some(ids) = neighbours[x >> 3 << 2 | y >> 3 << 1 | z >> 3] else { continue };
+            *triangle = ids[(x & 7) << 6 | (y & 7) << 3 | z & 7];
+            if *triangle >= 0 && *triangle != last {
+                all |= self.directions.of(*triangle as u32);
+                last = *triangle;
+            }
+        }
+        Some((triangles, all))
+    }
+
+    /// Searches the three edges that start at a cell's lowest node, and the cell itself if its corners have one sign.
+    fn cell(&self, leaf: LeafId, number: usize, triangles: [i32; 8], found: &mut Vec<Suspect>) {
+        let local = Ijk::in_leaf(Ijk::default(), number);
+        let cell = self.signs.origin(leaf) + local;
+        let is_inside = |corner: usize| {
+            let offset = Ijk([corner >> 2, corner >> 1 & 1, corner & 1].map(|x| x as i32));
+            let (leaf, number) = self.signs.locate(leaf, (local + offset).0)?;
+            Some(self.signs.inside(leaf)[number >> 6] >> (number & 63) & 1 == 1)
+        };
+        let inside: [Option<bool>; 8] = std::array::from_fn(is_inside);
+        let corners: [Option<Corner>; 8] = std::array::from_fn(|n| {
+            let triangle = u32::try_from(triangles[n]).ok()?;
+            let offset = Ijk([n >> 2, n >> 1 & 1, n & 1].map(|x| x as i32));
+            let p = DVec3::from(self.lattice.world_from_index(cell + offset));
+            let sample = self.distance.from_triangle(p, triangle);
+            Some(self.corner(p, &sample, if inside[n]? { Hidden::Air } else { Hidden::Solid }))
+        });
+        for (axis, other) in [(Axis::X, 4), (Axis::Y, 2), (Axis::Z, 1)] {
+            let (Some(a), Some(b)) = (corners[0], corners[other]) else { continue };
+            if inside[0] != inside[other] {
+                continue;
+            }
+            let hidden = if inside[0] == Some(true) { Hidden::Air } else { Hidden::Solid };
+            if let Some((at, depth)) = self.edge(a, b, axis, hidden) {
+                found.push(Suspect { cell, at, hidden, found: Found::OnEdge, depth });
+            }
+        }
+        let known = corners.iter().flatten().count();
+        let hidden = match inside[0] {
+            Some(side) if known >= KNOWN && inside.iter().all(|other| *other == Some(side)) => {
+                if side {
+                    Hidden::Air
+                } else {
+                    Hidden::Solid
+                }
+            }
+            _ => return,
+        };
+        if let Some((at, depth)) = self.inside_cell(cell, &corners, hidden) {
+            found.push(Suspect { cell, at, hidden, found: Found::InCell, depth });
+        }
+    }
+
+    fn corner(&self, p: DVec3, sample: &Sample, hidden: Hidden) -> Corner {
+        let phi = sample.distance - self.r;
+        let gradient = self.distance.gradient(p, sample, 1e-4 * self.lattice.voxel);
+        let sign = match hidden {
+            Hidden::Solid => 1.0,
+            Hidden::Air => -1.0,
+        };
+        Corner { p, height: sign * phi, gradient: sign * gradient, triangle: sample.triangle }
+    }
+
+    fn ask(&self, p: DVec3, guess: u32, hidden: Hidden) -> Corner {
+        let near = self.near.lists.as_ref().and_then(|lists: &CandidateLists| lists.at(p.to_array()));
+        let sample = match near {
+            Some(near) => self.distance.from_triangle(p, near.closest(self.distance.ssvh(), p).triangle),
+            None => self.distance.at(p, guess),
+        };
+        self.corner(p, &sample, hidden)
+    }
+
+    /// A point of an edge with the other sign than its ends, and how deep it is.
+    fn edge(&self, mut a: Corner, mut b: Corner, axis: Axis, hidden: Hidden) -> Option<(DVec3, f64)> {
+        let along = axis as usize;
+        for _ in 0..ALONG_EDGE {
+            let length = b.p[along] - a.p[along];
+            // The distance changes by no more than the way.
+            if a.height + b.height >= length {
+                return None;
+            }
+            let (fall, rise) = (a.gradient[along], b.gradient[along]);
+            // It must fall from both ends.
+            if fall >= 0.0 || rise <= 0.0 {
+                return None;
+            }
+            // Where the tangents meet.
+            let x =
+                ((b.height - a.height - rise * length) / (fall - rise)).clamp(0.02 * length, 0.98 * length);
+            let mut p = a.p;
+            p[along] += x;
+            let middle = self.ask(p, a.triangle, hidden);
+            if middle.height < 0.0 {
+                return self.deep(middle);
+            }
+            if middle.gradient[along] < 0.0 {
+                a = middle;
+            } else {
+                b = middle;
+            }
+        }
+        None
+    }
+
+    /// A point in a cell with the other sign than its corners, and how deep it is.
+    fn inside_cell(&self, cell: Ijk, corners: &[Option<Corner>; 8], hidden: Hidden) -> Option<(DVec3, f64)> {
+        let voxel = self.lattice.voxel;
+        let lo = DVec3::from(self.lattice.world_from_index(cell));
+        let hi = lo + voxel;
+        // All known corners must look down towards the middle, or there is nothing between them.
+        let centre = lo + 0.5 * voxel;
+        let falls = |c: &Corner| c.gradient.dot(centre - c.p) < 0.0;
+        if !corners.iter().flatten().all(falls) {
+            return None;
+        }
+        let mut p = centre;
+        let mut triangle = corners.iter().flatten().next()?.triangle;
+        for _ in 0..IN_CELL {
+            let here = self.ask(p, triangle, hidden);
+            if here.height < 0.0 {
+                return self.deep(here);
+            }
+            // Nothing in the cell is farther away.
+            if here.height >= 3f64.sqrt() * voxel {
+                return None;
+            }
+            triangle = here.triangle;
+            // Down, and a little further.
+            let next = (p - here.gradient * (here.height + 0.02 * voxel)).clamp(lo, hi);
+            if (next - p).length() < 1e-3 * voxel {
+                return None;
+            }
+            p = next;
+        }
+        None
+    }
+
+    fn deep(&self, corner: Corner) -> Option<(DVec3, f64)> {
+        let depth = -corner.height / self.lattice.voxel;
+        (depth > NEGLIGIBLE).then_some((corner.p, depth))
+    }
+}
+
+/// The corners of a cell in the array of a leaf's nodes, z fastest.
+const CORNERS: [usize; 8] = {
+    let mut corners = [0; 8];
+    let mut n = 0;
+    while n < 8 {
+        corners[n] = ((n >> 2) * SIDE + (n >> 1 & 1)) * SIDE + (n & 1);
+        n += 1;
+    }
+    corners
+};

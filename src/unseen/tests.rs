@@ -1,0 +1,168 @@
+use super::*;
+use crate::distance::SignedDistance;
+use crate::mesh::{Topology, TriMesh, shapes};
+use crate::offset::{Length, OffsetResult, OffsetSettings, VoxelSize, offset};
+use crate::run::RunSettings;
+
+const VOXEL: f64 = 0.1;
+
+/// Boxes given by their lowest and highest corners.
+fn boxes(all: &[[[f64; 3]; 2]]) -> TriMesh {
+    let cube = (shapes::by_name("box").unwrap().make)(2);
+    let mut mesh = TriMesh { vertices: Vec::new(), triangles: Vec::new() };
+    for [lo, hi] in all {
+        let first = mesh.vertices.len() as u32;
+        // The shape reaches from -1 to 1.
+        let place = |p: &[f64; 3]| std::array::from_fn(|a| lo[a] + 0.5 * (p[a] + 1.0) * (hi[a] - lo[a]));
+        mesh.vertices.extend(cube.vertices.iter().map(place));
+        mesh.triangles.extend(cube.triangles.iter().map(|t| t.map(|v| first + v)));
+    }
+    mesh
+}
+
+fn run(mesh: &TriMesh, r: f64, resolve: u32) -> OffsetResult {
+    let settings = OffsetSettings {
+        distance: Length::Units(r),
+        voxel: VoxelSize::Units(VOXEL),
+        resolve,
+        ..OffsetSettings::default()
+    };
+    offset(mesh, &settings, &RunSettings::with_threads(2).unwrap()).unwrap()
+}
+
+/// Two slabs above each other with `gap` between them, the middle of it at height `z`.
+fn slabs(gap: f64, z: f64) -> TriMesh {
+    let (low, high) = (z - 0.5 * gap, z + 0.5 * gap);
+    boxes(&[[[-0.73, -0.61, low - 0.8], [0.71, 0.67, low]], [[-0.73, -0.61, high], [0.71, 0.67, high + 0.8]]])
+}
+
+#[test]
+fn a_gap_between_nodes_is_found() {
+    for z in [0.03, 0.05, 0.07, -1.34] {
+        // What is left of the gap is 0.3 voxels wide.
+        let unseen = run(&slabs(0.43, z), 0.2, 0).statistics.unseen;
+        assert!(unseen.gaps == 1 && unseen.sheets == 0, "{z}: {unseen:?}");
+        let place = &unseen.places[0];
+        assert_eq!(place.kind, UnseenKind::Gap);
+        // It widens towards the rounded rims.
+        assert!((place.at[2] - z).abs() < 0.02 && (0.14..0.5).contains(&place.depth), "{z}: {place:?}");
+        let [lo, hi] = place.bbox;
+        assert!(hi[0] - lo[0] > 1.2 && hi[1] - lo[1] > 1.0, "{place:?}");
+    }
+}
+
+#[test]
+fn a_sheet_between_nodes_is_found() {
+    for z in [0.03, 0.05, 0.07] {
+        // A thick block, of which something stays, and a plate that shrinks to 0.3 voxels.
+        let mesh = boxes(&[
+            [[-3.0, -0.6, -0.6], [-1.0, 0.6, 0.6]],
+            [[-0.7, -0.6, z - 0.215], [0.7, 0.6, z + 0.215]],
+        ]);
+        let unseen = run(&mesh, -0.2, 0).statistics.unseen;
+        assert!(unseen.sheets == 1 && unseen.gaps == 0, "{z}: {unseen:?}");
+        assert!((unseen.places[0].at[2] - z).abs() < 0.015, "{unseen:?}");
+    }
+}
+
+#[test]
+fn a_part_in_a_cell_is_found() {
+    for centre in [[1.05, 0.05, 0.05], [1.04, 0.06, 0.04], [1.25, -0.35, 0.55]] {
+        let half = 0.025;
+        let small = [centre.map(|x| x - half), centre.map(|x| x + half)];
+        let mesh = boxes(&[[[-0.6; 3], [0.6; 3]], small]);
+        let unseen = run(&mesh, 0.0, 0).statistics.unseen;
+        assert_eq!((unseen.parts, unseen.count()), (1, 1), "{centre:?}: {unseen:?}");
+        let at = unseen.places[0].at;
+        assert!((0..3).all(|a| (at[a] - centre[a]).abs() < half), "{at:?} {centre:?}");
+    }
+}
+
+#[test]
+fn what_is_seen_is_not_reported() {
+    let sphere = (shapes::by_name("sphere").unwrap().make)(12);
+    let torus = (shapes::by_name("torus").unwrap().make)(12);
+    for mesh in [&sphere, &torus, &slabs(0.9, 0.05)] {
+        for r in [0.2, 0.07, 0.0] {
+            let unseen = run(mesh, r, 0).statistics.unseen;
+            assert_eq!(unseen, Unseen::default(), "{r}");
+        }
+    }
+}
+
+/// Each place against the true distance and against the result.
+#[test]
+fn every_place_is_on_the_wrong_side() {
+    let mut checked = 0;
+    for (name, detail) in
+        [("carved_cube", 10), ("fin", 6), ("near_spheres", 12), ("flower", 8), ("bracket", 6)]
+    {
+        let mesh = (shapes::by_name(name).unwrap().make)(detail);
+        let topology = Topology::new(&mesh);
+        let truth = SignedDistance::new(&mesh, &topology);
+        for r in [0.2, 0.13, 0.0, -0.12, -0.2] {
+            let settings = OffsetSettings {
+                distance: Length::Units(r),
+                voxel: VoxelSize::Units(VOXEL),
+                ..OffsetSettings::default()
+            };
+            let Ok(result) = offset(&mesh, &settings, &RunSettings::with_threads(2).unwrap()) else {
+                continue;
+            };
+            let result_topology = Topology::new(&result.mesh);
+            let made = SignedDistance::new(&result.mesh, &result_topology);
+            for place in &result.statistics.unseen.places {
+                let [true_phi, made_phi] =
+                    [truth.at(place.at.into(), 0).distance - r, made.at(place.at.into(), 0).distance];
+                assert!(true_phi * made_phi < 0.0, "{name} {r}: {place:?} {true_phi} {made_phi}");
+                assert!(made_phi.abs() > 0.04 * VOXEL, "{name} {r}: {place:?} {made_phi}");
+                assert!((true_phi.abs() / VOXEL - place.depth).abs() < 1e-6);
+                checked += 1;
+            }
+        }
+    }
+    assert!(checked > 5, "{checked}");
+}
+
+#[test]
+fn threads_do_not_matter() {
+    let mesh = (shapes::by_name("carved_cube").unwrap().make)(10);
+    let settings = OffsetSettings {
+        distance: Length::Units(-0.2),
+        voxel: VoxelSize::Units(0.15),
+        ..OffsetSettings::default()
+    };
+    let [one, two] = [1, 2].map(|threads| {
+        offset(&mesh, &settings, &RunSettings::with_threads(threads).unwrap()).unwrap().statistics.unseen
+    });
+    assert_eq!(one, two);
+}
+
+#[test]
+fn resolving_brings_it_back() {
+    let mesh = slabs(0.43, 0.05);
+    let [coarse, fine] = [0, 3].map(|resolve| run(&mesh, 0.2, resolve));
+    assert_eq!((coarse.statistics.halvings, coarse.statistics.unseen.gaps), (0, 1));
+    assert!((1..=3).contains(&fine.statistics.halvings), "{}", fine.statistics.halvings);
+    assert_eq!(fine.statistics.unseen, Unseen::default());
+    assert_eq!(fine.statistics.voxel, VOXEL * 0.5f64.powi(fine.statistics.halvings as i32));
+    let components = |result: &OffsetResult| Topology::new(&result.mesh).components();
+    assert_eq!((components(&coarse), components(&fine)), (1, 2));
+}
+
+#[test]
+fn resolving_finds_what_no_node_is_in() {
+    // Shrinks to a plate of 0.3 voxels, and to nothing else.
+    let mesh = boxes(&[[[-0.7, -0.6, -0.165], [0.7, 0.6, 0.265]]]);
+    let settings = OffsetSettings {
+        distance: Length::Units(-0.2),
+        voxel: VoxelSize::Units(VOXEL),
+        resolve: 3,
+        ..OffsetSettings::default()
+    };
+    let run = RunSettings::with_threads(2).unwrap();
+    let result = offset(&mesh, &settings, &run).unwrap();
+    assert!(result.statistics.halvings > 0 && !result.mesh.triangles.is_empty());
+    let unresolved = OffsetSettings { resolve: 0, ..settings };
+    assert!(matches!(offset(&mesh, &unresolved, &run), Err(crate::error::Error::Empty(_))));
+}
