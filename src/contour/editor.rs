@@ -4,7 +4,7 @@
 use super::feature::{Asker, feature_between, nearest};
 use super::features::{Features, Sides};
 use super::grid::Grid;
-use super::patch::{Patch, PatchEdge};
+use super::patch::{Patch, PatchEdge, PatchTriangle};
 use super::qef::{cross, dot};
 use super::surface::Surface;
 
@@ -97,7 +97,7 @@ impl Editor<'_> {
                 if split == MOST_SPLITS {
                     return split;
                 }
-                let Some(new) = self.split(n) else { continue };
+                let Some(new) = self.improve(n) else { continue };
                 split += 1;
                 vertices.push(new);
                 self.flip_around(new);
@@ -107,6 +107,11 @@ impl Editor<'_> {
         split
     }
 
+    /// Whether a triangle at a vertex is far from the surface.
+    pub fn is_far_around(&mut self, vertex: u32) -> bool {
+        self.patch.star(vertex).into_iter().any(|n| self.worst(n).is_some())
+    }
+
     /// Where a triangle is farthest from the surface, if that is beyond the tolerance: the number of a side or 3 for
     /// its centre, and the place.
     pub fn worst(&mut self, n: usize) -> Option<(usize, Point)> {
@@ -114,15 +119,20 @@ impl Editor<'_> {
         let [a, b, c] = t.corners;
         let centre = std::array::from_fn(|i| (a[i] + b[i] + c[i]) / 3.0);
         let places = [middle(a, b), middle(b, c), middle(c, a), centre];
-        let sides = if self.trusting { self.features.sides(t.vertices.into_iter()) } else { Sides::NONE };
+        let sides = self.sides(&t);
         let errors = places.map(|p| self.error(p, &sides));
         let worst = (0..4).max_by(|&i, &j| errors[i].total_cmp(&errors[j]))?;
         (errors[worst] > self.tolerance).then_some((worst, places[worst]))
     }
 
-    /// Splits a triangle, or an edge of it, where it is farthest from the surface.
-    pub fn split(&mut self, n: usize) -> Option<u32> {
+    /// Splits a triangle, or an edge of it, where it is farthest from the surface, or merges the ends of an edge if
+    /// that is not possible. Returns the vertex around which the triangles are others now.
+    pub fn improve(&mut self, n: usize) -> Option<u32> {
         let (worst, from) = self.worst(n)?;
+        self.split(n, worst, from).or_else(|| self.mend(n))
+    }
+
+    fn split(&mut self, n: usize, worst: usize, from: Point) -> Option<u32> {
         let [a, b, c] = self.patch.triangle_at(n).corners;
         let edge = if worst < 3 { self.patch.edge(n, worst) } else { None };
         let around: Vec<Point> = match &edge {
@@ -157,6 +167,11 @@ impl Editor<'_> {
         [crease.map(world), next.map(world)]
     }
 
+    /// What the features at the corners of a triangle know of the surface, if that is enough.
+    pub fn sides(&self, t: &PatchTriangle) -> Sides {
+        if self.trusting { self.features.sides(t.vertices.into_iter()) } else { Sides::NONE }
+    }
+
     fn voxel(&self) -> f64 {
         self.grid.voxel()
     }
@@ -171,7 +186,8 @@ impl Editor<'_> {
     }
 }
 
-fn middle(p: Point, q: Point) -> Point {
+/// The middle of a segment.
+pub fn middle(p: Point, q: Point) -> Point {
     std::array::from_fn(|i| 0.5 * (p[i] + q[i]))
 }
 

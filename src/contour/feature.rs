@@ -333,7 +333,8 @@ pub fn along(a: Point, scale: f64, b: Point) -> Point {
     std::array::from_fn(|i| a[i] + scale * b[i])
 }
 
-fn distance2(a: Point, b: Point) -> f64 {
+/// The square of the distance of two points.
+pub fn distance2(a: Point, b: Point) -> f64 {
     let d = along(a, -1.0, b);
     dot(d, d)
 }

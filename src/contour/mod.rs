@@ -45,6 +45,7 @@ mod face_vertex;
 mod feature;
 mod features;
 mod grid;
+mod merge;
 mod numbering;
 mod output;
 mod patch;
@@ -160,6 +161,7 @@ pub fn contour(
             let recovered = recover::recover(&cells, surface, &wishes, &mut mesh, run)?;
             statistics.recovered = recovered.moved;
             statistics.refused = recovered.refused;
+            statistics.merged = recovered.merged;
             statistics.flipped = recovered.flipped;
             statistics.refined = recovered.split;
             if let Some(tolerance) = settings.tolerance {
@@ -169,7 +171,7 @@ pub fn contour(
                 statistics.beyond_tolerance = Some(refined.beyond);
             }
         }
-        let mesh = mesh.mesh;
+        let mesh = mesh.into_mesh();
         statistics.vertices = mesh.vertices.len() as u64;
         statistics.triangles = mesh.triangles.len() as u64;
         Ok((mesh, statistics))

@@ -92,7 +92,7 @@ pub fn triangulate(
         ..ContourStatistics::default()
     };
     let added = vec![Vec::new(); leaves.len()];
-    let mesh = LeafMesh { mesh: TriMesh { vertices, triangles }, ranges, added };
+    let mesh = LeafMesh { mesh: TriMesh { vertices, triangles }, ranges, added, gone: Vec::new() };
     Ok(Triangulation { mesh, far, statistics })
 }
 

@@ -2,12 +2,16 @@
 //!
 //! The construction keeps every vertex in its cell, and blunts features there that pass beside it: the tip of
 //! a wedge that is thinner than a voxel, a corner between the nodes. When the mesh is finished, such vertices are
-//! moved to where they belong, edges are flipped along the crease, and what is far from the surface all the same is
-//! split, each only if the mesh stays embedded (see `patch`).
+//! moved to where they belong, neighbours that are in the way there are merged into them, edges are flipped along the
+//! crease, and what is far from the surface all the same is split, each only if the mesh stays embedded (see `patch`).
+//!
+//! First all vertices go to their places, then the rest is mended: a split that is made before the vertices around
+//! it are in place is in their way later.
 
 use super::cells::Cells;
 use super::editor::Editor;
 use super::features::Sides;
+use super::merge::Arrival;
 use super::patch::Bounds;
 use super::rounds::LeafMesh;
 use super::surface::Surface;
@@ -37,11 +41,26 @@ pub struct Recovered {
     pub moved: u64,
     /// Vertices that got half-way only, or stayed.
     pub refused: u64,
+    /// Vertices that went because they were in the way.
+    pub merged: u64,
     /// Edges flipped.
     pub flipped: u64,
     /// Triangles and edges split.
     pub split: u64,
 }
+
+/// What is done in one pass over the mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    /// Vertices go to their places.
+    Grant,
+    /// What is still far from the surface is mended.
+    Mend,
+}
+
+/// A leaf that is far from a neighbour's changes in one pass can be beside them in the next, so what is left is mended
+/// once more. A third time would gain a tenth of that.
+const STAGES: [Stage; 3] = [Stage::Grant, Stage::Mend, Stage::Mend];
 
 /// Moves vertices of the finished mesh to where they belong. `wishes` has a list for each leaf.
 ///
@@ -56,38 +75,87 @@ pub fn recover(
 ) -> Result<Recovered, Cancelled> {
     let mut recovered = Recovered::default();
     let (grid, features) = (&cells.grid, &cells.features);
-    mesh.in_rounds(
-        cells,
-        run,
-        |mesh, leaf| {
-            let wishes = &wishes[leaf.0 as usize];
-            let places = |w: &Wish| w.place.into_iter().chain([mesh.mesh.vertices[w.vertex as usize]]);
-            (!wishes.is_empty()).then(|| Bounds::around(wishes.iter().flat_map(places)))
-        },
-        |leaf, patch| {
-            let tolerance = TOLERANCE;
-            let mut editor = Editor { patch, surface, grid, features, tolerance, trusting: true, hint: 0 };
-            let done = editor.grant_all(&wishes[leaf.0 as usize]);
-            (editor.patch, done)
-        },
-        |done| {
-            recovered.moved += done.moved;
-            recovered.refused += done.refused;
-            recovered.flipped += done.flipped;
-            recovered.split += done.split;
-        },
-    )?;
+    // By leaf how many wishes are not granted, and whether there is something left to do.
+    let mut open: Vec<(u64, bool)> = wishes.iter().map(|w| (0, !w.is_empty())).collect();
+    for stage in STAGES {
+        let (is_open, mut next) = (&open, open.clone());
+        mesh.in_rounds(
+            cells,
+            run,
+            |mesh, leaf| {
+                let wishes = &wishes[leaf.0 as usize];
+                let places = |w: &Wish| w.place.into_iter().chain([mesh.mesh.vertices[w.vertex as usize]]);
+                is_open[leaf.0 as usize].1.then(|| Bounds::around(wishes.iter().flat_map(places)))
+            },
+            |leaf, patch| {
+                let tolerance = TOLERANCE;
+                let mut editor =
+                    Editor { patch, surface, grid, features, tolerance, trusting: true, hint: 0 };
+                let done = editor.grant_all(&wishes[leaf.0 as usize], stage);
+                (editor.patch, (leaf, done))
+            },
+            |(leaf, (done, is_open))| {
+                next[leaf.0 as usize] = (done.refused, is_open);
+                recovered.moved += done.moved;
+                recovered.merged += done.merged;
+                recovered.flipped += done.flipped;
+                recovered.split += done.split;
+            },
+        )?;
+        open = next;
+    }
+    recovered.refused = open.iter().map(|(refused, _)| refused).sum();
     Ok(recovered)
 }
 
 impl Editor<'_> {
-    fn grant_all(&mut self, wishes: &[Wish]) -> Recovered {
+    /// What was done, and whether something is left to do.
+    fn grant_all(&mut self, wishes: &[Wish], stage: Stage) -> (Recovered, bool) {
         let mut recovered = Recovered::default();
+        let mut open = self.open(wishes);
+        self.move_all(wishes, &mut open, &mut recovered);
+        self.make_way(&mut open, &mut recovered);
+        if stage == Stage::Mend {
+            for (wish, place) in &open {
+                self.console(wish.vertex, *place);
+            }
+            for wish in wishes {
+                recovered.split += self.split_around(wish.vertex);
+            }
+            self.make_way(&mut open, &mut recovered);
+            for wish in wishes {
+                let merged = self.tidy_around(wish.vertex);
+                if merged > 0 {
+                    recovered.merged += merged;
+                    recovered.flipped += self.flip_around(wish.vertex);
+                }
+            }
+        }
+        recovered.refused = open.len() as u64;
+        let is_open = !open.is_empty()
+            || match stage {
+                Stage::Grant => {
+                    wishes.iter().any(|w| self.is_far_around(w.vertex) || self.is_untidy(w.vertex))
+                }
+                Stage::Mend => recovered.split > 0,
+            };
+        (recovered, is_open)
+    }
+
+    /// The vertices that are not where they belong, corners first, since creases can go around them.
+    fn open(&mut self, wishes: &[Wish]) -> Vec<(Wish, Point)> {
         let mut open: Vec<(Wish, Point)> = Vec::with_capacity(wishes.len());
         for wish in wishes {
+            let Some(position) = self.patch.position(wish.vertex) else { continue };
             let place = wish.place.or_else(|| self.place_on_surface(wish.vertex));
-            open.extend(place.map(|place| (*wish, place)));
+            open.extend(place.filter(|p| *p != position).map(|place| (*wish, place)));
         }
+        open.sort_by_key(|(wish, _)| !self.is_corner(wish.vertex));
+        open
+    }
+
+    /// Moves vertices, and flips edges around them.
+    fn move_all(&mut self, wishes: &[Wish], open: &mut Vec<(Wish, Point)>, recovered: &mut Recovered) {
         // A move can be in the way of another one, and an edge in the way of either.
         for _ in 0..2 {
             let before = open.len();
@@ -100,14 +168,17 @@ impl Editor<'_> {
                 break;
             }
         }
-        for (wish, place) in &open {
-            self.console(wish.vertex, *place);
-        }
-        recovered.refused = open.len() as u64;
-        for wish in wishes {
-            recovered.split += self.split_around(wish.vertex);
-        }
-        recovered
+    }
+
+    /// Brings vertices to their places by merging what is in the way there.
+    fn make_way(&mut self, open: &mut Vec<(Wish, Point)>, recovered: &mut Recovered) {
+        open.retain(|(wish, place)| {
+            let Some((vertex, arrival)) = self.reach(wish.vertex, *place) else { return true };
+            recovered.moved += 1;
+            recovered.merged += u64::from(arrival == Arrival::Merged);
+            recovered.flipped += self.flip_around(vertex);
+            false
+        });
     }
 
     /// The next best for a vertex that cannot have its place: as near to it as it can come, or some place on the

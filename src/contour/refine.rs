@@ -55,8 +55,8 @@ pub fn refine(
             cells,
             run,
             |mesh, leaf| {
-                let numbers = &numbers[leaf.0 as usize];
-                (!numbers.is_empty()).then(|| Bounds::around(numbers.iter().flat_map(|&t| mesh.corners(t))))
+                mesh.triangles(leaf).next()?;
+                Some(Bounds::around(mesh.triangles(leaf).flat_map(|t| mesh.corners(t))))
             },
             |leaf, patch| {
                 let mut editor =
@@ -98,7 +98,10 @@ impl Editor<'_> {
             }
         }
         for n in own {
-            if let Some(new) = self.split(n) {
+            if self.patch.is_gone(n) {
+                continue;
+            }
+            if let Some(new) = self.improve(n) {
                 refined.split += 1;
                 self.flip_around(new);
             }

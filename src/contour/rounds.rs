@@ -37,13 +37,43 @@ pub struct LeafMesh {
     pub ranges: Vec<usize>,
     /// Triangles that were added later, by leaf.
     pub added: Vec<Vec<usize>>,
+    /// The vertices that are gone, in the order in which they went.
+    pub gone: Vec<u32>,
 }
+
+/// The vertices of a triangle that is gone: patches are not made when vertices have numbers that large.
+const GONE: [u32; 3] = [u32::MAX; 3];
 
 impl LeafMesh {
     /// The numbers of the triangles of a leaf.
     pub fn triangles(&self, leaf: LeafId) -> impl Iterator<Item = usize> + '_ {
         let n = leaf.0 as usize;
-        (self.ranges[n]..self.ranges[n + 1]).chain(self.added[n].iter().copied())
+        let all = (self.ranges[n]..self.ranges[n + 1]).chain(self.added[n].iter().copied());
+        all.filter(|&t| self.mesh.triangles[t] != GONE)
+    }
+
+    /// The mesh without what is gone, in the same order.
+    pub fn into_mesh(self) -> TriMesh {
+        let LeafMesh { mut mesh, mut gone, .. } = self;
+        if gone.is_empty() {
+            return mesh;
+        }
+        gone.sort_unstable();
+        mesh.triangles.retain(|t| *t != GONE);
+        // By old number the new one.
+        let mut numbers = vec![0; mesh.vertices.len()];
+        let (mut next, mut gone) = (0, gone.into_iter().peekable());
+        for (old, number) in numbers.iter_mut().enumerate() {
+            if gone.next_if_eq(&(old as u32)).is_none() {
+                *number = next;
+                mesh.vertices[next as usize] = mesh.vertices[old];
+                next += 1;
+            }
+        }
+        mesh.vertices.truncate(next as usize);
+        let renumber = |t: &mut [u32; 3]| *t = t.map(|v| numbers[v as usize]);
+        mesh.triangles.par_iter_mut().with_min_len(1 << 14).for_each(renumber);
+        mesh
     }
 
     /// Has `work` change the patches around the leaves that `places` gives points for, each by itself. The patch of
@@ -99,17 +129,19 @@ impl LeafMesh {
         let homes = std::array::from_fn(|n| {
             around(origin + Ijk(delta(n as i32).map(|d| LEAF_DIM * d)), voxel, STRAY)
         });
-        let near = (0..27).filter(|&n: &i32| homes[n as usize].meets(&bounds));
-        let leaves = near.filter_map(|n| Some((n as u8, cells.signs.neighbour(leaf, delta(n))?)));
-        let triangles = leaves.flat_map(|(home, leaf)| {
-            self.triangles(leaf).map(move |number| PatchTriangle {
-                number,
-                vertices: self.mesh.triangles[number],
-                corners: self.mesh.corners(number),
-                home,
-            })
-        });
-        Patch::new(bounds, homes, triangles)
+        let mut patch = Patch::new(bounds, homes);
+        for (home, around) in homes.iter().enumerate() {
+            let Some(leaf) = cells.signs.neighbour(leaf, delta(home as i32)) else { continue };
+            if !around.meets(&bounds) {
+                continue;
+            }
+            for number in self.triangles(leaf) {
+                let vertices = self.mesh.triangles[number];
+                let corners = vertices.map(|v| self.mesh.vertices[v as usize]);
+                patch.add(PatchTriangle { number, vertices, corners, home: home as u8 });
+            }
+        }
+        patch
     }
 
     /// Whether every triangle is as near to its leaf as patches take it to be.
@@ -121,7 +153,7 @@ impl LeafMesh {
     }
 
     /// Puts what a patch changed into the mesh.
-    fn apply(&mut self, leaf: LeafId, changes: Changes) {
+    pub fn apply(&mut self, leaf: LeafId, changes: Changes) {
         let mesh = &mut self.mesh;
         let (first_vertex, first_triangle) = (mesh.vertices.len(), mesh.triangles.len());
         mesh.vertices.resize(first_vertex + changes.new_vertices as usize, [0.0; 3]);
@@ -133,8 +165,9 @@ impl LeafMesh {
             mesh.vertices[vertex(number) as usize] = position;
         }
         for (number, vertices) in changes.triangles {
-            mesh.triangles[triangle(number)] = vertices.map(vertex);
+            mesh.triangles[triangle(number)] = vertices.map_or(GONE, |v| v.map(vertex));
         }
+        self.gone.extend(changes.gone_vertices.into_iter().map(vertex));
     }
 
     /// The corners of a triangle.

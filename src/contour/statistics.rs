@@ -24,6 +24,8 @@ pub struct ContourStatistics {
     pub recovered: u64,
     /// Vertices that belong outside of their cells and could not be moved there.
     pub refused: u64,
+    /// Vertices merged into one that was to be moved to a place that they were in the way of.
+    pub merged: u64,
     /// Edges flipped along a crease.
     pub flipped: u64,
     /// Vertices added where the surface was too far away.
@@ -47,6 +49,7 @@ impl AddAssign for ContourStatistics {
         self.clamped += other.clamped;
         self.recovered += other.recovered;
         self.refused += other.refused;
+        self.merged += other.merged;
         self.flipped += other.flipped;
         self.refined += other.refined;
         self.beyond_tolerance = match (self.beyond_tolerance, other.beyond_tolerance) {

@@ -1,0 +1,79 @@
+//! Axis-parallel boxes.
+
+type Point = [f64; 3];
+
+/// A closed box.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounds {
+    /// The lowest coordinates.
+    pub lo: Point,
+    /// The highest coordinates.
+    pub hi: Point,
+}
+
+impl Bounds {
+    /// The box of nothing, which meets no other.
+    pub const NOTHING: Bounds = Bounds { lo: [f64::INFINITY; 3], hi: [f64::NEG_INFINITY; 3] };
+
+    /// The box around points; nothing around none.
+    #[inline]
+    pub fn around(points: impl IntoIterator<Item = Point>) -> Bounds {
+        points.into_iter().fold(Bounds::NOTHING, |all, p| all.with(&Bounds { lo: p, hi: p }))
+    }
+
+    /// The box around a triangle.
+    #[inline(always)]
+    pub fn of_triangle([a, b, c]: [Point; 3]) -> Bounds {
+        // Without regard to what is not a number: comparisons that are faster than those of `f64::min`.
+        let least = |x: f64, y: f64| if x < y { x } else { y };
+        let largest = |x: f64, y: f64| if x > y { x } else { y };
+        Bounds {
+            lo: std::array::from_fn(|i| least(a[i], least(b[i], c[i]))),
+            hi: std::array::from_fn(|i| largest(a[i], largest(b[i], c[i]))),
+        }
+    }
+
+    /// The box with `margin` around it.
+    pub fn grown(&self, margin: f64) -> Bounds {
+        Bounds { lo: self.lo.map(|x| x - margin), hi: self.hi.map(|x| x + margin) }
+    }
+
+    /// What two boxes have in common.
+    pub fn within(&self, other: &Bounds) -> Bounds {
+        Bounds {
+            lo: std::array::from_fn(|a| self.lo[a].max(other.lo[a])),
+            hi: std::array::from_fn(|a| self.hi[a].min(other.hi[a])),
+        }
+    }
+
+    /// Whether two boxes have a point in common.
+    #[inline(always)]
+    pub fn meets(&self, other: &Bounds) -> bool {
+        // No short cuts: six comparisons side by side are faster than branches.
+        (self.lo[0] <= other.hi[0])
+            & (other.lo[0] <= self.hi[0])
+            & (self.lo[1] <= other.hi[1])
+            & (other.lo[1] <= self.hi[1])
+            & (self.lo[2] <= other.hi[2])
+            & (other.lo[2] <= self.hi[2])
+    }
+
+    /// Whether a point lies in this box.
+    pub fn holds(&self, p: Point) -> bool {
+        self.contains(&Bounds { lo: p, hi: p })
+    }
+
+    /// Whether `other` lies in this box.
+    pub fn contains(&self, other: &Bounds) -> bool {
+        (0..3).all(|a| self.lo[a] <= other.lo[a] && other.hi[a] <= self.hi[a])
+    }
+
+    /// The box around two boxes.
+    #[inline]
+    pub fn with(&self, other: &Bounds) -> Bounds {
+        Bounds {
+            lo: std::array::from_fn(|a| self.lo[a].min(other.lo[a])),
+            hi: std::array::from_fn(|a| self.hi[a].max(other.hi[a])),
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! Moves, splits and flips.
+
+use super::Patch;
+use super::changes::{NEW_TRIANGLE, NEW_VERTEX};
+use super::triangle::{OWN_HOME, PatchEdge, PatchTriangle};
+
+type Point = [f64; 3];
+
+impl Patch {
+    /// Moves a vertex to `to`, which must be rounded, if the mesh stays embedded.
+    pub fn try_move(&mut self, vertex: u32, to: Point) -> bool {
+        let moved = |n: usize| {
+            let mut triangle = self.triangles[n];
+            if let Some(k) = triangle.place(vertex) {
+                triangle.corners[k] = to;
+            }
+            (n, triangle)
+        };
+        let star: Vec<(usize, PatchTriangle)> = self.star(vertex).into_iter().map(moved).collect();
+        if !self.accepts(&star, &[]) {
+            return false;
+        }
+        self.put(&star);
+        self.changes.moved.push((vertex, to));
+        true
+    }
+
+    /// Puts a new vertex at `at`, which must be rounded, in place of a triangle's interior, if the mesh stays
+    /// embedded. Returns its number.
+    pub fn try_split_face(&mut self, n: usize, at: Point) -> Option<u32> {
+        let t = self.triangles[n];
+        let new = self.new_vertex()?;
+        let corner = |k: usize| (t.vertices[k % 3], t.corners[k % 3]);
+        let third = |k: usize| [corner(k), corner(k + 1), (new, at)];
+        let next = self.triangles.len();
+        let parts = [
+            (n, self.reshaped(n, third(0))),
+            (next, self.triangle(self.new_triangle(0), third(1))),
+            (next + 1, self.triangle(self.new_triangle(1), third(2))),
+        ];
+        self.insert(&parts, new, at)
+    }
+
+    /// Puts a new vertex at `at`, which must be rounded, in place of an edge's interior, if the mesh stays
+    /// embedded. Returns its number.
+    pub fn try_split_edge(&mut self, edge: &PatchEdge, at: Point) -> Option<u32> {
+        let PatchEdge { triangles: [first, second], a, b, c, d } = *edge;
+        let new = self.new_vertex()?;
+        let x = (new, at);
+        let next = self.triangles.len();
+        let parts = [
+            (first, self.reshaped(first, [a, x, c])),
+            (next, self.triangle(self.new_triangle(0), [x, b, c])),
+            (second, self.reshaped(second, [b, x, d])),
+            (next + 1, self.triangle(self.new_triangle(1), [x, a, d])),
+        ];
+        self.insert(&parts, new, at)
+    }
+
+    fn new_vertex(&self) -> Option<u32> {
+        NEW_VERTEX.checked_add(self.changes.new_vertices)
+    }
+
+    fn new_triangle(&self, n: usize) -> usize {
+        NEW_TRIANGLE + self.changes.new_triangles + n
+    }
+
+    /// A triangle of the patch's own leaf.
+    fn triangle(&self, number: usize, corners: [(u32, Point); 3]) -> PatchTriangle {
+        PatchTriangle {
+            number,
+            vertices: corners.map(|c| c.0),
+            corners: corners.map(|c| c.1),
+            home: OWN_HOME,
+        }
+    }
+
+    /// Triangle `n` of the patch with other corners.
+    fn reshaped(&self, n: usize, corners: [(u32, Point); 3]) -> PatchTriangle {
+        let PatchTriangle { number, home, .. } = self.triangles[n];
+        PatchTriangle { home, ..self.triangle(number, corners) }
+    }
+
+    /// Accepts a split into `parts`, of which two are new.
+    fn insert(&mut self, parts: &[(usize, PatchTriangle)], vertex: u32, at: Point) -> Option<u32> {
+        if !self.accepts(parts, &[]) {
+            return None;
+        }
+        self.put(parts);
+        self.changes.new_vertices += 1;
+        self.changes.new_triangles += 2;
+        self.changes.moved.push((vertex, at));
+        self.changes.triangles.extend(parts.iter().map(|(_, t)| (t.number, Some(t.vertices))));
+        Some(vertex)
+    }
+
+    /// Replaces an edge by the other diagonal of its two triangles, if the mesh stays embedded.
+    pub fn try_flip(&mut self, edge: &PatchEdge) -> bool {
+        let PatchEdge { triangles: [first, second], a, b, c, d } = *edge;
+        let joined = |v: &[u32; 3]| v.contains(&c.0) && v.contains(&d.0);
+        if self.vertices.iter().any(joined) {
+            return false;
+        }
+        let pair = [(first, self.reshaped(first, [a, d, c])), (second, self.reshaped(second, [d, b, c]))];
+        if !self.accepts(&pair, &[]) {
+            return false;
+        }
+        self.put(&pair);
+        self.changes.triangles.extend(pair.map(|(_, t)| (t.number, Some(t.vertices))));
+        true
+    }
+}

@@ -1,0 +1,220 @@
+//! A part of a finished mesh that can be changed without making it intersect itself.
+//!
+//! The mesh is embedded: triangles meet in the vertices and edges that they share, and nowhere else. A vertex is
+//! moved, a triangle or an edge split, an edge flipped or merged to a vertex, only if the triangles that this changes
+//! meet no other triangle and not each other, decided by exact predicates on the coordinates as they will be written.
+//! Then the mesh is embedded afterwards, whatever it was changed for; and since neighbours stay neighbours (`edits`)
+//! or meet under the link condition (`collapse`), it stays closed and 2-manifold.
+//!
+//! All triangles that a change could meet must be in the patch: it holds every triangle whose box meets its
+//! bounds, and no change reaches beyond them. Triangles are looked for by the leaf that they belong to, so each of
+//! them also stays near that one ([`PatchTriangle::home`]).
+
+mod bounds;
+mod changes;
+mod collapse;
+mod edits;
+#[cfg(test)]
+mod tests;
+mod triangle;
+
+pub use bounds::Bounds;
+pub use changes::{Changes, NEW_TRIANGLE, NEW_VERTEX};
+pub use triangle::{Homes, PatchEdge, PatchTriangle};
+
+type Point = [f64; 3];
+
+/// The vertices of a triangle that is gone: no vertex has this number.
+const NOBODY: [u32; 3] = [u32::MAX; 3];
+
+/// The number of triangles that most patches have room for. Twice as many are no harm.
+const USUAL: usize = 1024;
+
+/// A part of an embedded mesh.
+#[derive(Debug)]
+pub struct Patch {
+    bounds: Bounds,
+    homes: Homes,
+    triangles: Vec<PatchTriangle>,
+    /// Their vertices and boxes, which are searched all the time.
+    vertices: Vec<[u32; 3]>,
+    boxes: Vec<Bounds>,
+    /// What was changed so far.
+    pub changes: Changes,
+}
+
+impl Patch {
+    /// A patch without triangles.
+    pub fn new(bounds: Bounds, homes: Homes) -> Patch {
+        Patch {
+            bounds,
+            homes,
+            triangles: Vec::with_capacity(USUAL),
+            vertices: Vec::with_capacity(USUAL),
+            boxes: Vec::with_capacity(USUAL),
+            changes: Changes::default(),
+        }
+    }
+
+    /// Adds a triangle of the mesh if its box meets the bounds. All such triangles must be added before the first
+    /// change.
+    #[inline]
+    pub fn add(&mut self, triangle: PatchTriangle) {
+        let around = triangle.bounds();
+        if around.meets(&self.bounds) {
+            self.push(triangle, around);
+        }
+    }
+
+    /// Whether the mesh stays embedded when some triangles change and others are gone.
+    fn accepts(&self, changed: &[(usize, PatchTriangle)], gone: &[usize]) -> bool {
+        let Some(&(_, first)) = changed.first() else { return false };
+        let boxes: Vec<Bounds> = changed.iter().map(|(_, t)| t.bounds()).collect();
+        let around = boxes.iter().fold(first.bounds(), |all, b| all.with(b));
+        if !self.bounds.contains(&around) || !changed.iter().all(|(_, t)| t.has_area()) {
+            return false;
+        }
+        let is_at_home =
+            |((_, t), b): (&(usize, PatchTriangle), &Bounds)| self.homes[usize::from(t.home)].contains(b);
+        if !changed.iter().zip(&boxes).all(is_at_home) {
+            return false;
+        }
+        for (i, (_, t)) in changed.iter().enumerate() {
+            if changed[..i].iter().any(|(_, other)| t.meets(other)) {
+                return false;
+            }
+        }
+        for (n, (other, other_box)) in self.triangles.iter().zip(&self.boxes).enumerate() {
+            if !other_box.meets(&around) || changed.iter().any(|&(m, _)| m == n) || gone.contains(&n) {
+                continue;
+            }
+            let meets =
+                |((_, t), b): (&(usize, PatchTriangle), &Bounds)| b.meets(other_box) && t.meets(other);
+            if changed.iter().zip(&boxes).any(meets) {
+                return false;
+            }
+        }
+        true
+    }
+
+    fn put(&mut self, changed: &[(usize, PatchTriangle)]) {
+        for &(n, triangle) in changed {
+            if n < self.triangles.len() {
+                self.triangles[n] = triangle;
+                self.vertices[n] = triangle.vertices;
+                self.boxes[n] = triangle.bounds();
+            } else {
+                self.push(triangle, triangle.bounds());
+            }
+        }
+    }
+
+    /// Whether triangle `n` of the patch was taken out.
+    pub fn is_gone(&self, n: usize) -> bool {
+        self.vertices[n] == NOBODY
+    }
+
+    /// Takes a triangle out; the numbers of the others stay.
+    fn remove(&mut self, n: usize) {
+        let nothing =
+            PatchTriangle { number: usize::MAX, vertices: NOBODY, corners: [[f64::NAN; 3]; 3], home: 0 };
+        self.triangles[n] = nothing;
+        self.vertices[n] = nothing.vertices;
+        self.boxes[n] = Bounds::NOTHING;
+    }
+
+    fn push(&mut self, triangle: PatchTriangle, bounds: Bounds) {
+        self.triangles.push(triangle);
+        self.vertices.push(triangle.vertices);
+        self.boxes.push(bounds);
+    }
+
+    /// The triangle with number `n` in the patch.
+    pub fn triangle_at(&self, n: usize) -> &PatchTriangle {
+        &self.triangles[n]
+    }
+
+    /// The numbers in the patch of the triangles with the given numbers of the mesh, which ascend.
+    pub fn numbered(&self, numbers: &[usize]) -> Vec<usize> {
+        let is_one = |n: &usize| numbers.binary_search(&self.triangles[*n].number).is_ok();
+        (0..self.triangles.len()).filter(is_one).collect()
+    }
+
+    /// The numbers in the patch of the triangles at a vertex.
+    pub fn star(&self, vertex: u32) -> Vec<usize> {
+        // Compared without short cuts, for speed.
+        let has = |[a, b, c]: [u32; 3]| (a == vertex) | (b == vertex) | (c == vertex);
+        self.vertices.iter().enumerate().filter_map(|(n, &v)| has(v).then_some(n)).collect()
+    }
+
+    /// The position of a vertex of the patch.
+    pub fn position(&self, vertex: u32) -> Option<Point> {
+        self.vertices
+            .iter()
+            .position(|v| v.contains(&vertex))
+            .and_then(|n| self.triangles[n].position(vertex))
+    }
+
+    /// Whether a vertex other than `vertex` lies within `radius` of `p`.
+    pub fn is_taken(&self, p: Point, radius: f64, vertex: u32) -> bool {
+        let near = |q: Point| (0..3).map(|a| (q[a] - p[a]) * (q[a] - p[a])).sum::<f64>() <= radius * radius;
+        self.triangles.iter().any(|t| t.vertices.iter().zip(t.corners).any(|(&v, q)| v != vertex && near(q)))
+    }
+
+    /// The vertices within `radius` of `p`, by number, with the squares of their distances.
+    pub fn vertices_near(&self, p: Point, radius: f64) -> Vec<(u32, f64)> {
+        let distance2 = |q: Point| (0..3).map(|a| (q[a] - p[a]) * (q[a] - p[a])).sum::<f64>();
+        let near = self.near(&Bounds::around([p]).grown(radius));
+        let corners = near
+            .into_iter()
+            .flat_map(|n| self.triangles[n].vertices.into_iter().zip(self.triangles[n].corners));
+        let mut all: Vec<(u32, f64)> =
+            corners.map(|(v, q)| (v, distance2(q))).filter(|(_, d)| *d <= radius * radius).collect();
+        all.sort_unstable_by_key(|(v, _)| *v);
+        all.dedup_by_key(|(v, _)| *v);
+        all
+    }
+
+    /// The edges at a vertex and those opposite to it, with both their triangles.
+    pub fn edges_around(&self, vertex: u32) -> Vec<PatchEdge> {
+        let star = self.star(vertex);
+        let Some(&first) = star.first() else { return Vec::new() };
+        let around = star.iter().fold(self.boxes[first], |all, &n| all.with(&self.boxes[n]));
+        let near = self.near(&around);
+        let mut edges = Vec::with_capacity(2 * star.len());
+        for &n in &star {
+            let Some(k) = self.triangles[n].place(vertex) else { continue };
+            // The edge from the vertex on, and the opposite one: each edge once.
+            for side in [k, (k + 1) % 3] {
+                edges.extend(self.edge_among(&near, n, side));
+            }
+        }
+        edges
+    }
+
+    /// Side `side` of triangle `n`, with the triangle beyond it.
+    pub fn edge(&self, n: usize, side: usize) -> Option<PatchEdge> {
+        self.edge_among(&self.near(&self.boxes[n]), n, side)
+    }
+
+    /// The numbers in the patch of the triangles whose boxes meet `bounds`.
+    fn near(&self, bounds: &Bounds) -> Vec<usize> {
+        let meets = |(n, b): (usize, &Bounds)| b.meets(bounds).then_some(n);
+        self.boxes.iter().enumerate().filter_map(meets).collect()
+    }
+
+    /// Side `side` of triangle `n`, with the triangle beyond it, which is one of `near`.
+    fn edge_among(&self, near: &[usize], n: usize, side: usize) -> Option<PatchEdge> {
+        let t = &self.triangles[n];
+        let corner = |k: usize| (t.vertices[k % 3], t.corners[k % 3]);
+        let (a, b, c) = (corner(side), corner(side + 1), corner(side + 2));
+        let (m, k) = near.iter().find_map(|&m| {
+            let [p, q, r] = self.vertices[m];
+            let k = [(p, q), (q, r), (r, p)].into_iter().position(|edge| edge == (b.0, a.0))?;
+            Some((m, k))
+        })?;
+        let other = &self.triangles[m];
+        let d = (other.vertices[(k + 2) % 3], other.corners[(k + 2) % 3]);
+        Some(PatchEdge { triangles: [n, m], a, b, c, d })
+    }
+}
