@@ -9,7 +9,7 @@
 //!       directions               suspects                                                 confirm           places
 //! ```
 //!
-//! Promised: every place is a point whose true sign differs from the result's, by more than [`DEEP`](confirm::DEEP)
+//! Promised: every place is a point whose true sign differs from the result's, by more than 0.05
 //! voxels. Not promised: to find all. What is thinner than a few hundredths of a voxel, or hides where only one wall is
 //! within a voxel of any node, can be missed.
 

@@ -40,7 +40,7 @@ pub struct Unseen {
     pub gaps: usize,
     /// Parts smaller than a cell.
     pub parts: usize,
-    /// Where they are, those with the most points first; at most [`MOST_PLACES`].
+    /// Where they are, those with the most points first; at most a hundred.
     pub places: Vec<Place>,
 }
 
