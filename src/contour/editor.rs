@@ -17,13 +17,19 @@ const FLAT: f64 = 0.996;
 const GOOD_EDGE: f64 = 0.01;
 
 /// Points that are nearer than this, in voxels, to the sides that features nearby know are not asked about.
-const SURE: f64 = 0.02;
+const SURE: f64 = 0.01;
 
 /// A flip must bring the middle of the edge nearer by this factor.
 const GAIN: f64 = 0.5;
 
 /// A place is taken when a vertex is as near as this, in voxels.
 const TAKEN: f64 = 0.01;
+
+/// Shares of the way to its place that the vertex of a split goes: another triangle can be in its way.
+const SHARES: [f64; 4] = [1.0, 0.75, 0.5, 0.25];
+
+/// A part of the way must bring the vertex of a split nearer by this factor.
+const GOOD_PART: f64 = 0.8;
 
 /// The most splits that come of one vertex. Where the surface jumps, splits do not bring it nearer, and would go on
 /// without end.
@@ -139,8 +145,14 @@ impl Editor<'_> {
             Some(edge) => vec![edge.a.1, edge.b.1, edge.c.1, edge.d.1],
             None => vec![a, b, c],
         };
-        for target in self.surface_points(from, &around).into_iter().flatten() {
-            let target = self.grid.round(target);
+        let targets = self.surface_points(from, &around);
+        for (share, target) in SHARES.into_iter().flat_map(|share| targets.map(|target| (share, target))) {
+            let Some(target) = target else { continue };
+            let target = self.grid.round(mix(from, target, share));
+            // Part of the way to a crease can lead away from the surface.
+            if share < 1.0 && self.error(target, &Sides::NONE) > GOOD_PART * self.error(from, &Sides::NONE) {
+                continue;
+            }
             if self.patch.is_taken(target, TAKEN * self.voxel(), u32::MAX) {
                 continue;
             }
@@ -184,6 +196,11 @@ impl Editor<'_> {
         }
         self.surface.at(p, &mut self.hint).0.abs() / self.voxel()
     }
+}
+
+/// The point at `share` of the way from `a` to `b`.
+pub fn mix(a: Point, b: Point, share: f64) -> Point {
+    std::array::from_fn(|i| a[i] + share * (b[i] - a[i]))
 }
 
 /// The middle of a segment.

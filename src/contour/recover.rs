@@ -9,7 +9,7 @@
 //! it are in place is in their way later.
 
 use super::cells::Cells;
-use super::editor::Editor;
+use super::editor::{Editor, mix};
 use super::features::Sides;
 use super::merge::Arrival;
 use super::patch::Bounds;
@@ -193,8 +193,4 @@ impl Editor<'_> {
             }
         }
     }
-}
-
-fn mix(a: Point, b: Point, share: f64) -> Point {
-    std::array::from_fn(|i| a[i] + share * (b[i] - a[i]))
 }
