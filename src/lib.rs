@@ -5,6 +5,7 @@ pub mod geom;
 pub mod run;
 
 pub mod lattice;
+pub mod slab;
 pub mod mesh;
 pub mod io;
 pub mod ssvh;

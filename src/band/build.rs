@@ -8,6 +8,7 @@ use crate::filter::{Block, BoxSide, Filter, FilterSettings, FilterStatistics, Sw
 use crate::geom::aabb::Aabb;
 use crate::lattice::{Ijk, LEAF_DIM, Lattice};
 use crate::run::{Cancelled, Phase, RunSettings};
+use crate::slab::Slab;
 use crate::ssvh::Hit;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -21,6 +22,8 @@ pub struct BandSettings {
     pub r: f64,
     /// Half-width in voxels: nodes with abs(phi) < half_width h become active. At least 1.
     pub half_width: f64,
+    /// The part of the lattice to work off.
+    pub slab: Slab,
 }
 
 impl BandSettings {
@@ -127,9 +130,12 @@ impl<'a> Plan<'a> {
             r: settings.r,
             half_width: f64::from(settings.background()),
             settings: *filters,
+            slab: settings.slab,
         };
         let statistics = FilterStatistics { nodes_total: node_count(grid), ..Default::default() };
-        Plan { filter, boxes: bounding_boxes(grid, filters.side), statistics }
+        let mut boxes = bounding_boxes(grid, filters.side);
+        boxes.retain(|b| settings.slab.computes(b.origin, b.side));
+        Plan { filter, boxes, statistics }
     }
 }
 
@@ -197,8 +203,12 @@ impl Worker<'_> {
             Verdict::Outside => {}
             Verdict::Inside => batch.inside_blocks.push((block.origin, block.side)),
             Verdict::Kept { triangle, .. } if self.filter.settings.octree == Switch::Off => {
-                for origin in block.leaves() {
-                    self.whole_leaf(origin, triangle, &mut batch, &mut statistics);
+                for origin in block.leaves().filter(|&o| self.settings.slab.computes(o, LEAF_DIM)) {
+                    let mut of_leaf = FilterStatistics::default();
+                    self.whole_leaf(origin, triangle, &mut batch, &mut of_leaf);
+                    if self.settings.slab.owns(origin) {
+                        statistics += of_leaf;
+                    }
                 }
             }
             // A box of a single leaf has no smaller ones above the leaf's own.
@@ -218,10 +228,14 @@ impl Worker<'_> {
             }
         }
         for (origin, triangle, distance) in kept {
+            let mut of_leaf = FilterStatistics::default();
             if self.filter.settings.candidates == Switch::On {
-                self.leaf_by_lists(origin, triangle, distance, narrowing, &mut batch, &mut statistics);
+                self.leaf_by_lists(origin, triangle, distance, narrowing, &mut batch, &mut of_leaf);
             } else {
-                self.leaf_by_queries(origin, triangle, &mut batch, &mut statistics);
+                self.leaf_by_queries(origin, triangle, &mut batch, &mut of_leaf);
+            }
+            if self.settings.slab.owns(origin) {
+                statistics += of_leaf;
             }
         }
         (batch, statistics)

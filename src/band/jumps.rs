@@ -1,7 +1,7 @@
 //! Leaves where the sign of the distance jumps far from the surface, which happens when the input is not
 //! closed, or is and intersects itself: there the offset solid is closed along the jump.
 
-use super::LeafBatch;
+use super::{BandSettings, LeafBatch};
 use crate::candidates::BlockLists;
 use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE};
 use std::collections::HashSet;
@@ -12,14 +12,16 @@ use std::collections::HashSet;
 pub fn leaves_at_jumps(
     leaves: &[Ijk],
     inside_blocks: &[(Ijk, i32)],
-    background: f32,
+    settings: &BandSettings,
     inside_at: impl FnOnce(&[Ijk]) -> Vec<bool>,
 ) -> LeafBatch {
     let leaves: HashSet<Ijk> = leaves.iter().copied().collect();
     let mut pairs: Vec<(Ijk, Ijk)> = Vec::new();
     for &(origin, side) in inside_blocks {
         for (leaf, neighbour) in border(origin, side) {
-            if !leaves.contains(&neighbour) {
+            // Beyond what is computed, nothing is known.
+            let is_computed = [leaf, neighbour].iter().all(|&l| settings.slab.computes(l, LEAF_DIM));
+            if is_computed && !leaves.contains(&neighbour) {
                 pairs.push((leaf, neighbour));
             }
         }
@@ -33,11 +35,12 @@ pub fn leaves_at_jumps(
         .collect();
     origins.sort_unstable();
     origins.dedup();
-    let count = origins.len();
+    let (count, background) = (origins.len(), settings.background());
     LeafBatch {
         origins,
         values: vec![-background; count * LEAF_SIZE],
         active: vec![[0; 8]; count],
+        inside: vec![[!0; 8]; count],
         closest: vec![-1; count * LEAF_SIZE],
         inside_blocks: Vec::new(),
         lists: BlockLists::default(),
@@ -66,12 +69,16 @@ fn border(origin: Ijk, side: i32) -> impl Iterator<Item = (Ijk, Ijk)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lattice::Lattice;
+    use crate::slab::Slab;
 
     #[test]
     fn only_faces_towards_the_outside_get_leaves() {
         // A block of 2 x 2 x 2 leaves; everything with x < 0 is outside, the rest inside or in leaves.
         let leaves = [Ijk::new(-8, 0, 0)];
-        let batch = leaves_at_jumps(&leaves, &[(Ijk::default(), 16)], 0.5, |nodes| {
+        let settings =
+            BandSettings { lattice: Lattice { voxel: 0.5 }, r: 0.0, half_width: 1.0, slab: Slab::WHOLE };
+        let batch = leaves_at_jumps(&leaves, &[(Ijk::default(), 16)], &settings, |nodes| {
             nodes.iter().map(|n| n.0[0] >= 0).collect()
         });
         assert_eq!(batch.origins, [Ijk::new(0, 0, 8), Ijk::new(0, 8, 0), Ijk::new(0, 8, 8)]);

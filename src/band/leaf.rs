@@ -1,6 +1,6 @@
 //! A leaf of the band while it is filled.
 
-use super::LeafBatch;
+use super::{LeafBatch, inside_mask};
 use crate::filter::Block;
 use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE};
 
@@ -50,11 +50,13 @@ impl Leaf {
 
     /// Appends the leaf at `origin` to `batch`, unless no node of it is active.
     pub(super) fn finish(&self, origin: Ijk, batch: &mut LeafBatch) -> Fate {
-        let uniform = || self.values.iter().all(|v| v.signum() == self.values[0].signum());
-        if self.active.iter().any(|&word| word != 0) || !uniform() {
+        let inside = inside_mask(&self.values);
+        let is_uniform = inside == [0; 8] || inside == [!0; 8];
+        if !is_uniform || self.active.iter().any(|&word| word != 0) {
             batch.origins.push(origin);
             batch.values.extend_from_slice(&self.values);
             batch.active.push(self.active);
+            batch.inside.push(inside);
             batch.closest.extend_from_slice(&self.closest);
             return Fate::Kept;
         }

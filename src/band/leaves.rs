@@ -14,6 +14,8 @@ pub struct LeafBatch {
     pub values: Vec<f32>,
     /// Nodes with abs(phi) below the background.
     pub active: Vec<LeafMask>,
+    /// Nodes with a negative value.
+    pub inside: Vec<LeafMask>,
     /// Number of the closest triangle on active nodes, -1 elsewhere; 512 per leaf.
     pub closest: Vec<i32>,
     /// Blocks (origin, side; the side a multiple of 8) that are inside as a whole and hold no leaf.

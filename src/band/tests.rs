@@ -3,6 +3,7 @@ use crate::distance::SignedDistance;
 use crate::filter::{BoxSide, FilterSettings, Switch};
 use crate::mesh::{Topology, TriMesh};
 use crate::run::{Cancelled, RunSettings};
+use crate::slab::Slab;
 use std::collections::HashMap;
 
 /// An octahedron of circumradius 1 around a centre off the lattice.
@@ -47,7 +48,7 @@ fn check_against_every_node(r: f64, half_width: f64) {
     let mesh = octahedron();
     let topology = Topology::new(&mesh);
     let distance = SignedDistance::new(&mesh, &topology);
-    let settings = BandSettings { lattice: Lattice { voxel: 0.07 }, r, half_width };
+    let settings = BandSettings { lattice: Lattice { voxel: 0.07 }, r, half_width, slab: Slab::WHOLE };
     let batch = build_all(&settings, 2);
     let background = settings.background();
     let leaf: HashMap<Ijk, usize> = batch.origins.iter().zip(0..).map(|(&o, n)| (o, n)).collect();
@@ -99,7 +100,8 @@ fn the_band_holds_exactly_the_valid_nodes_and_all_signs() {
 
 #[test]
 fn the_band_does_not_depend_on_the_number_of_threads() {
-    let settings = BandSettings { lattice: Lattice { voxel: 0.05 }, r: 0.2, half_width: 3.0 };
+    let settings =
+        BandSettings { lattice: Lattice { voxel: 0.05 }, r: 0.2, half_width: 3.0, slab: Slab::WHOLE };
     let one = build_all(&settings, 1);
     for threads in [2, 8] {
         let other = build_all(&settings, threads);
@@ -117,7 +119,8 @@ fn cancelling_stops_the_band() {
     let distance = SignedDistance::new(&mesh, &topology);
     let run = RunSettings::with_threads(2).unwrap();
     run.cancel_token().cancel();
-    let settings = BandSettings { lattice: Lattice { voxel: 0.05 }, r: 0.2, half_width: 1.0 };
+    let settings =
+        BandSettings { lattice: Lattice { voxel: 0.05 }, r: 0.2, half_width: 1.0, slab: Slab::WHOLE };
     assert_eq!(build(&distance, &settings, &run, |_| Ok::<_, Cancelled>(())), Err(Cancelled));
 }
 
@@ -129,7 +132,7 @@ fn nodes_on_the_offset_surface_are_outside_whatever_rounding_says() {
     let lattice = Lattice { voxel: 0.1 };
     // Faces at 1 + 0.3, where 13 * 0.1 is a node; and at 1 - 0.3, where 7 * 0.1 is not 0.7 in f64.
     for (r, plane) in [(0.3, 13), (-0.3, 7)] {
-        let settings = BandSettings { lattice, r, half_width: 1.0 };
+        let settings = BandSettings { lattice, r, half_width: 1.0, slab: Slab::WHOLE };
         let run = RunSettings::with_threads(1).unwrap();
         let (mut on_plane, mut values) = (0, Vec::new());
         build(&distance, &settings, &run, |batch| {
@@ -177,7 +180,7 @@ fn the_band_does_not_depend_on_the_filters() {
     let distance = SignedDistance::new(&mesh, &topology);
     let run = RunSettings::with_threads(2).unwrap();
     for (r, half_width) in [(0.3, 1.0), (-0.2, 3.0), (0.0, 1.0)] {
-        let settings = BandSettings { lattice: Lattice { voxel: 0.09 }, r, half_width };
+        let settings = BandSettings { lattice: Lattice { voxel: 0.09 }, r, half_width, slab: Slab::WHOLE };
         // Leaves by origin: batches come in the order of the boxes.
         let leaves = |filters: &FilterSettings| {
             let mut leaves = std::collections::BTreeMap::new();
@@ -224,7 +227,8 @@ fn each_filter_saves_distance_computations() {
     let topology = Topology::new(&mesh);
     let distance = SignedDistance::new(&mesh, &topology);
     let run = RunSettings::with_threads(2).unwrap();
-    let settings = BandSettings { lattice: Lattice { voxel: 0.02 }, r: 0.3, half_width: 1.0 };
+    let settings =
+        BandSettings { lattice: Lattice { voxel: 0.02 }, r: 0.3, half_width: 1.0, slab: Slab::WHOLE };
     let count = |signed_distance, octree, n| {
         let side = BoxSide::PowerOfTwo(n);
         let filters = FilterSettings { side, signed_distance, octree, ..FilterSettings::default() };

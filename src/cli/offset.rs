@@ -45,9 +45,9 @@ pub(super) fn run(arguments: &OffsetArguments, session: &Session) -> Result<(), 
 
     let (_, write) = session.phase(Phase::Write, || {
         save_mesh(&result.mesh, &arguments.output, coordinates(arguments.f64), session)?;
-        match &arguments.vdb {
-            Some(path) => save_vdb(&result.band, path, arguments, result.statistics.distance, session),
-            None => Ok(()),
+        match (&arguments.vdb, &result.band) {
+            (Some(path), Some(band)) => save_vdb(band, path, arguments, result.statistics.distance, session),
+            _ => Ok(()),
         }
     })?;
     phases.write = write;
@@ -69,6 +69,7 @@ fn settings(arguments: &OffsetArguments, session: &Session) -> Result<OffsetSett
         voxel,
         sign: arguments.sign.mode(),
         half_width: if arguments.vdb.is_some() { STORED_HALF_WIDTH } else { 1.0 },
+        keep_band: arguments.vdb.is_some(),
         precision: precision(&arguments.output, arguments.f64)?,
         tolerance: arguments.tolerance,
         resolve: arguments.resolve,

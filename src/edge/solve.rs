@@ -12,49 +12,53 @@ use crate::run::{Cancelled, Phase, RunSettings};
 use glam::DVec3;
 use rayon::prelude::*;
 
+/// The slot of a leaf of the ring.
+const RING: [u32; 2] = [u32::MAX; 2];
+
 /// The closest triangles of the band's nodes, by leaf of a [`SignField`].
 #[derive(Clone, Debug, Default)]
 pub struct NodeTriangles {
-    /// Per leaf of the field its position in `ids`, or `u32::MAX` for a leaf of the ring.
-    slots: Vec<u32>,
-    ids: Vec<i32>,
+    /// Per leaf of the field its part and its place there, or `u32::MAX` twice for a leaf of the ring.
+    slots: Vec<[u32; 2]>,
+    /// As they were made: they are not moved together.
+    parts: Vec<Vec<i32>>,
 }
 
 impl NodeTriangles {
-    /// `ids` holds 512 numbers for each of the leaves `origins`, -1 where none is known.
+    /// `parts` holds, one after the other, 512 numbers for each of the leaves `origins`, -1 where none is known.
     ///
     /// # Panics
     /// When the lengths do not match.
-    pub fn new(signs: &SignField, origins: &[Ijk], ids: Vec<i32>) -> Self {
-        assert_eq!(ids.len(), origins.len() * LEAF_SIZE, "512 triangle numbers per leaf");
+    pub fn new(signs: &SignField, origins: &[Ijk], parts: Vec<Vec<i32>>) -> Self {
+        let places: Vec<[u32; 2]> = (0..)
+            .zip(&parts)
+            .flat_map(|(part, ids)| (0..(ids.len() / LEAF_SIZE) as u32).map(move |place| [part, place]))
+            .collect();
+        assert_eq!(places.len(), origins.len(), "512 triangle numbers per leaf");
         let mut order: Vec<u32> = (0..origins.len() as u32).collect();
         order.sort_unstable_by_key(|&n| origins[n as usize]);
         // Both lists are sorted by origin now.
         let mut order = order.into_iter().peekable();
         let slots = signs
             .leaves()
-            .map(|leaf| order.next_if(|&n| origins[n as usize] == signs.origin(leaf)).unwrap_or(u32::MAX))
+            .map(|leaf| {
+                let own = order.next_if(|&n| origins[n as usize] == signs.origin(leaf));
+                own.map_or(RING, |n| places[n as usize])
+            })
             .collect();
-        NodeTriangles { slots, ids }
+        NodeTriangles { slots, parts }
     }
 
     /// The numbers of a leaf's nodes, -1 where none is known; `None` for a leaf of the ring.
     pub fn of_leaf(&self, leaf: LeafId) -> Option<&[i32]> {
-        let slot = *self.slots.get(leaf.0 as usize)?;
-        if slot == u32::MAX {
-            return None;
-        }
-        let first = slot as usize * LEAF_SIZE;
-        Some(&self.ids[first..first + LEAF_SIZE])
+        // Without any parts, all triangles are unknown.
+        let [part, place] = *self.slots.get(leaf.0 as usize)?;
+        let first = place as usize * LEAF_SIZE;
+        self.parts.get(part as usize).map(|ids| &ids[first..first + LEAF_SIZE])
     }
 
     fn get(&self, leaf: LeafId, number: usize) -> Option<u32> {
-        // Without any ids, all triangles are unknown.
-        let slot = *self.slots.get(leaf.0 as usize)?;
-        if slot == u32::MAX {
-            return None;
-        }
-        u32::try_from(self.ids[slot as usize * LEAF_SIZE + number]).ok()
+        u32::try_from(self.of_leaf(leaf)?[number]).ok()
     }
 }
 

@@ -3,6 +3,7 @@
 use super::{Block, FilterSettings, FilterStatistics, Switch, bounding_box, signed_distance};
 use crate::distance::SignedDistance;
 use crate::lattice::Lattice;
+use crate::slab::Slab;
 
 /// Rounding allowance of a test, in voxels: nodes are evaluated with an error far below this, and a block
 /// is only ever kept for it in vain.
@@ -42,6 +43,8 @@ pub struct Filter<'a> {
     /// Which filters are on. [`bounding_box`](Self::bounding_box) heeds the first two; whether to call
     /// [`octree`](Self::octree) is the caller's choice.
     pub settings: FilterSettings,
+    /// The part of the lattice to work off. Blocks that another slab owns are not counted.
+    pub slab: Slab,
 }
 
 impl Filter<'_> {
@@ -52,7 +55,8 @@ impl Filter<'_> {
         let centre = block.centre(self.lattice);
         let reach = self.reach(block);
         let hit = self.distance.ssvh().closest(centre);
-        statistics.bounding_box_queries += 1;
+        let own = u64::from(self.slab.owns(block.origin));
+        statistics.bounding_box_queries += own;
         let signed = self.distance.from_triangle(centre, hit.triangle).distance;
         let phi = signed - self.r;
         if bounding_box == Switch::On
@@ -61,15 +65,15 @@ impl Filter<'_> {
             return uniform(phi);
         }
         if signed_distance == Switch::On && signed_distance::rejects(signed, self.r, reach) {
-            statistics.signed_distance_rejected += 1;
+            statistics.signed_distance_rejected += own;
             return uniform(phi);
         }
         Verdict::Kept { triangle: hit.triangle, distance: signed }
     }
 
     /// Subdivides a kept block down to blocks of side `smallest` and hands to `visit` each block that is
-    /// rejected on the way, and the smallest ones that are kept. Every node of `block` is in exactly one
-    /// of them. `triangle` is one near the block.
+    /// rejected on the way, and the smallest ones that are kept. Every node of `block` that is computed is in exactly
+    /// one of them. `triangle` is one near the block.
     pub fn octree(
         &self,
         block: Block,
@@ -86,14 +90,18 @@ impl Filter<'_> {
             centres.map(|centre| self.distance.ssvh().closest_from(centre, triangle))
         };
         for ((child, centre), hit) in children.into_iter().zip(centres).zip(hits) {
+            if !self.slab.computes(child.origin, child.side) {
+                continue;
+            }
+            let own = u64::from(self.slab.owns(child.origin));
             let sample = self.distance.from_triangle(centre, hit.triangle);
             let phi = sample.distance - self.r;
             if self.clearance(sample.distance) > self.reach(child) {
-                statistics.octree_queries_invalid += 1;
+                statistics.octree_queries_invalid += own;
                 visit(child, uniform(phi));
                 continue;
             }
-            statistics.octree_queries_valid += 1;
+            statistics.octree_queries_valid += own;
             if child.side > smallest {
                 self.octree(child, sample.triangle, smallest, statistics, visit);
             } else {

@@ -1,7 +1,8 @@
 //! The recipe: from a mesh and a distance to the offset surface and its narrow band.
 //!
 //! ```text
-//!  mesh -> hierarchy -> signed distance -> filters -> band <-> OpenVDB -> edges -> contour -> mesh
+//!  mesh -> hierarchy -> signed distance -> filters -> band -> edges -> contour -> mesh
+//!                                                       `-> OpenVDB, where the band is kept
 //! ```
 //!
 //! Promised for a closed, consistently oriented input: the result is closed, 2-manifold, consistently
@@ -12,6 +13,7 @@ pub(crate) mod narrow_band;
 mod resolving;
 mod settings;
 mod statistics;
+mod stored_band;
 mod surface;
 #[cfg(test)]
 mod tests;
@@ -31,7 +33,9 @@ use crate::mesh::{Topology, TriMesh};
 use crate::run::{Phase, RunSettings};
 use crate::unseen;
 use crate::vdb::Band;
+use narrow_band::NarrowBand;
 use std::time::Instant;
+use stored_band::StoredBand;
 use surface::OffsetSurface;
 
 /// What [`offset`] returns.
@@ -39,8 +43,8 @@ use surface::OffsetSurface;
 pub struct OffsetResult {
     /// The offset surface: closed, 2-manifold, free of intersections.
     pub mesh: TriMesh,
-    /// The narrow band: phi and the closest triangles, in OpenVDB grids.
-    pub band: Band,
+    /// The narrow band: phi and the closest triangles, in OpenVDB grids, where it was to be kept.
+    pub band: Option<Band>,
     /// What happened on the way.
     pub statistics: OffsetStatistics,
 }
@@ -82,16 +86,17 @@ fn on_lattice(
 ) -> Result<OffsetResult, Error> {
     let (lattice, r) = (band_settings.lattice, band_settings.r);
     let started = Instant::now();
-    let (band, lists, filter) = narrow_band::build(distance, band_settings, run)?;
+    let mut stored = settings.keep_band.then(|| StoredBand::new(band_settings)).transpose()?;
+    let NarrowBand { signs, near, counts } =
+        narrow_band::build(distance, band_settings, stored.as_mut(), run)?;
+    let band = stored.map(StoredBand::finish);
     times.band += started.elapsed().as_secs_f64();
 
     let started = Instant::now();
-    let (signs, triangles) = narrow_band::read_back(&band, run)?;
     let numbers = run.install(|| EdgeNumbers::new(&signs))?;
     if numbers.is_empty() {
         return Err(EmptyResult::explain(distance, band_settings).into());
     }
-    let near = NearTriangles { nodes: triangles, lists: Some(lists) };
     let (crossings, edges) = solve(distance, lattice, r, &signs, numbers, &near, run)?;
     let suspects = unseen::suspects(distance, r, lattice, &signs, &near, run)?;
     let NearTriangles { lists, .. } = near;
@@ -104,8 +109,17 @@ fn on_lattice(
     let unseen = unseen::confirm(suspects, &mesh, run)?;
     times.contour += started.elapsed().as_secs_f64();
 
-    let (voxel, vdb) = (lattice.voxel, VdbStatistics::of(&band));
-    let statistics =
-        OffsetStatistics { distance: r, voxel, times, filter, edges, contour, unseen, halvings: 0, vdb };
+    let (voxel, vdb) = (lattice.voxel, VdbStatistics::new(&counts, band.as_ref()));
+    let statistics = OffsetStatistics {
+        distance: r,
+        voxel,
+        times,
+        filter: counts.filter,
+        edges,
+        contour,
+        unseen,
+        halvings: 0,
+        vdb,
+    };
     Ok(OffsetResult { mesh, band, statistics })
 }

@@ -1,84 +1,122 @@
-//! The band's way into OpenVDB and back.
+//! The band as the edges and the contour need it, in plain arrays; and into OpenVDB, where it is to be kept.
 
-use crate::band::{self, BandSettings, LeafBatch, LeafMask, SignField, inside_mask};
-use crate::candidates::CandidateLists;
+use super::stored_band::StoredBand;
+use crate::band::{self, BandSettings, InsideBlocks, LeafBatch, LeafMask, SignField};
+use crate::candidates::{BlockLists, CandidateLists};
 use crate::distance::SignedDistance;
-use crate::edge::NodeTriangles;
+use crate::edge::{NearTriangles, NodeTriangles};
 use crate::error::Error;
 use crate::filter::FilterStatistics;
-use crate::lattice::{Ijk, LEAF_SIZE};
+use crate::lattice::Ijk;
 use crate::run::RunSettings;
-use crate::vdb::{Band, ClosestGrid, SurfaceGrid};
 
-/// Builds the band into OpenVDB grids: `surface` with phi and `closest` with triangle numbers. With it come the lists of
-/// the triangles near the surface.
+/// The band around the offset surface.
+pub(crate) struct NarrowBand {
+    /// Which nodes are inside.
+    pub(crate) signs: SignField,
+    /// The closest triangles of its nodes, and those near its edges.
+    pub(crate) near: NearTriangles,
+    /// What making it took.
+    pub(crate) counts: BandCounts,
+}
+
+/// The work of the filters, and the size of what the slab owns.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct BandCounts {
+    pub(crate) filter: FilterStatistics,
+    pub(crate) active_voxels: u64,
+    pub(crate) leaves: u64,
+}
+
+/// What is asked of the leaves once they are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Next {
+    /// Edges and a contour.
+    Contour,
+    /// Nothing: they are only stored.
+    Nothing,
+}
+
+/// Builds the band, and adds what the slab owns to `stored`.
 pub(crate) fn build(
     distance: &SignedDistance,
     settings: &BandSettings,
+    stored: Option<&mut StoredBand>,
     run: &RunSettings,
-) -> Result<(Band, CandidateLists, FilterStatistics), Error> {
-    let mut surface = SurfaceGrid::new(settings.lattice, settings.half_width)?;
-    let mut closest = ClosestGrid::new(settings.lattice)?;
-    let mut insert = |batch: &LeafBatch| -> Result<(), Error> {
-        surface.insert_leaves(&batch.origins, &batch.values, &batch.active)?;
-        closest.insert_leaves(&batch.origins, &batch.closest, &batch.active)?;
-        let (origins, sides): (Vec<_>, Vec<_>) =
-            batch.inside_blocks.iter().map(|&(origin, side)| (origin, side as u32)).unzip();
-        Ok(surface.fill_inside(&origins, &sides)?)
-    };
-    let mut inside_blocks = Vec::new();
-    let mut lists = Vec::new();
-    let statistics = band::build(distance, settings, run, |mut batch| {
-        inside_blocks.extend_from_slice(&batch.inside_blocks);
-        insert(&batch)?;
-        lists.push((std::mem::take(&mut batch.origins), std::mem::take(&mut batch.lists)));
-        Ok::<_, Error>(())
-    })?;
-    let leaves = surface.leaf_origins();
-    let jumps = band::leaves_at_jumps(&leaves, &inside_blocks, settings.background(), |nodes| {
-        surface.inside_at(nodes)
-    });
-    if !jumps.origins.is_empty() {
-        surface.insert_leaves(&jumps.origins, &jumps.values, &jumps.active)?;
-        closest.insert_leaves(&jumps.origins, &jumps.closest, &jumps.active)?;
+) -> Result<NarrowBand, Error> {
+    let (parts, counts) = Parts::collect(distance, settings, Next::Contour, stored, run)?;
+    run.install(|| {
+        let ring = |nodes: &[Ijk]| Ok::<_, Error>(parts.blocks.contain(nodes));
+        let signs = SignField::new(&parts.origins, &parts.inside, ring)?;
+        let nodes = NodeTriangles::new(&signs, &parts.origins, parts.closest);
+        let lists = CandidateLists::new(settings.lattice, parts.lists);
+        Ok(NarrowBand { signs, near: NearTriangles { nodes, lists: Some(lists) }, counts })
+    })
+}
+
+/// Builds the band into `stored` only.
+pub(crate) fn store(
+    distance: &SignedDistance,
+    settings: &BandSettings,
+    stored: &mut StoredBand,
+    run: &RunSettings,
+) -> Result<BandCounts, Error> {
+    Ok(Parts::collect(distance, settings, Next::Nothing, Some(stored), run)?.1)
+}
+
+/// Leaves as they come out of the filters.
+#[derive(Default)]
+struct Parts {
+    origins: Vec<Ijk>,
+    inside: Vec<LeafMask>,
+    closest: Vec<Vec<i32>>,
+    lists: Vec<(Vec<Ijk>, BlockLists)>,
+    blocks: InsideBlocks,
+}
+
+impl Parts {
+    fn collect(
+        distance: &SignedDistance,
+        settings: &BandSettings,
+        next: Next,
+        mut stored: Option<&mut StoredBand>,
+        run: &RunSettings,
+    ) -> Result<(Parts, BandCounts), Error> {
+        let mut parts = Parts::default();
+        let mut counts = BandCounts::default();
+        let mut inside_blocks = Vec::new();
+        let mut take = |batch: LeafBatch, parts: &mut Parts| -> Result<(), Error> {
+            if let Some(stored) = &mut stored {
+                stored.insert(&batch, settings.slab)?;
+            }
+            for (_, active) in batch.origins.iter().zip(&batch.active).filter(|l| settings.slab.owns(*l.0)) {
+                counts.leaves += 1;
+                counts.active_voxels += active.iter().map(|word| u64::from(word.count_ones())).sum::<u64>();
+            }
+            parts.take(batch, next);
+            Ok(())
+        };
+        counts.filter = band::build(distance, settings, run, |batch| {
+            inside_blocks.extend_from_slice(&batch.inside_blocks);
+            take(batch, &mut parts)
+        })?;
+        let jumps = run.install(|| {
+            parts.blocks = InsideBlocks::new(&inside_blocks);
+            let inside_at = |nodes: &[Ijk]| parts.blocks.contain(nodes);
+            band::leaves_at_jumps(&parts.origins, &inside_blocks, settings, inside_at)
+        });
+        if !jumps.is_empty() {
+            take(jumps, &mut parts)?;
+        }
+        Ok((parts, counts))
     }
-    surface.prune();
-    let lists = CandidateLists::new(settings.lattice, lists);
-    Ok((Band { surface, closest: Some(closest) }, lists, statistics))
-}
 
-/// Leaves read at a time: enough to keep the bridge's overhead away, little enough to stay in cache.
-const LEAVES_PER_READ: usize = 256;
-
-/// Reads signs and closest triangles of a band back from OpenVDB, as from any stored band.
-pub(crate) fn read_back(band: &Band, run: &RunSettings) -> Result<(SignField, NodeTriangles), Error> {
-    let (signs, closest) =
-        run.install(|| rayon::join(|| read_signs(&band.surface), || read_closest(band.closest.as_ref())));
-    let (signs, (origins, ids)) = (signs?, closest?);
-    let triangles = NodeTriangles::new(&signs, &origins, ids);
-    Ok((signs, triangles))
-}
-
-fn read_signs(surface: &SurfaceGrid) -> Result<SignField, Error> {
-    let origins = surface.leaf_origins();
-    let mut inside: Vec<LeafMask> = Vec::with_capacity(origins.len());
-    let mut values = vec![0.0; LEAVES_PER_READ * LEAF_SIZE];
-    let mut active = vec![[0; 8]; LEAVES_PER_READ];
-    for first in (0..origins.len()).step_by(LEAVES_PER_READ) {
-        let count = LEAVES_PER_READ.min(origins.len() - first);
-        let values = &mut values[..count * LEAF_SIZE];
-        surface.read_leaves(first, values, &mut active[..count])?;
-        inside.extend(values.chunks_exact(LEAF_SIZE).map(inside_mask));
+    fn take(&mut self, batch: LeafBatch, next: Next) {
+        self.origins.extend_from_slice(&batch.origins);
+        if next == Next::Contour {
+            self.inside.extend(batch.inside);
+            self.closest.push(batch.closest);
+            self.lists.push((batch.origins, batch.lists));
+        }
     }
-    SignField::new(&origins, &inside, |missing| Ok(surface.inside_at(missing)))
-}
-
-/// The leaves of the closest triangles, and 512 numbers for each; none without a grid.
-fn read_closest(closest: Option<&ClosestGrid>) -> Result<(Vec<Ijk>, Vec<i32>), Error> {
-    let Some(closest) = closest else { return Ok((Vec::new(), Vec::new())) };
-    let origins = closest.leaf_origins();
-    let mut ids = vec![-1; origins.len() * LEAF_SIZE];
-    let mut active = vec![[0; 8]; origins.len()];
-    closest.read_leaves(0, &mut ids, &mut active)?;
-    Ok((origins, ids))
 }

@@ -5,6 +5,7 @@ use crate::contour::{ContourSettings, Precision};
 use crate::geom::aabb::Aabb;
 use crate::lattice::Lattice;
 use crate::mesh::TriMesh;
+use crate::slab::Slab;
 use glam::DVec3;
 
 /// A length given by a user.
@@ -57,6 +58,8 @@ pub struct OffsetSettings {
     /// Half-width of the stored band in voxels, 1 to 1000. Contouring needs 1, a level set for other
     /// programs 3.
     pub half_width: f64,
+    /// Keep the narrow band, in OpenVDB grids. Without, it is gone when the mesh is done.
+    pub keep_band: bool,
     /// Coordinates of the result.
     pub precision: Precision,
     /// Refine the result until it is this near to the true offset surface; `None` leaves it as the lattice
@@ -78,6 +81,7 @@ impl Default for OffsetSettings {
             voxel: VoxelSize::Resolution(256),
             sign: SignMode::Closed,
             half_width: 1.0,
+            keep_band: false,
             precision: Precision::F32,
             tolerance: None,
             resolve: 0,
@@ -167,7 +171,8 @@ impl OffsetSettings {
         if !(voxel > 0.0 && voxel.is_finite()) {
             return Err(SettingsError::Voxel(voxel));
         }
-        let band = BandSettings { lattice: Lattice { voxel }, r, half_width: self.half_width };
+        let band =
+            BandSettings { lattice: Lattice { voxel }, r, half_width: self.half_width, slab: Slab::WHOLE };
         self.check_range(mesh, &band)?;
         Ok(band)
     }

@@ -1,5 +1,6 @@
 //! What happened during an offset: the parts of the statistics file that the engine knows.
 
+use super::narrow_band::BandCounts;
 use crate::contour::ContourStatistics;
 use crate::edge::EdgeStatistics;
 use crate::filter::FilterStatistics;
@@ -57,16 +58,14 @@ pub struct VdbStatistics {
     pub active_voxels: u64,
     /// Its leaves.
     pub leaves: u64,
-    /// Bytes in memory, both grids.
+    /// Bytes in memory, both grids; 0 where the band is not kept.
     pub memory: u64,
 }
 
 impl VdbStatistics {
-    pub(super) fn of(band: &Band) -> Self {
-        VdbStatistics {
-            active_voxels: band.surface.active_voxels(),
-            leaves: band.surface.leaf_count() as u64,
-            memory: band.surface.memory() + band.closest.as_ref().map_or(0, |grid| grid.memory()),
-        }
+    pub(super) fn new(counts: &BandCounts, band: Option<&Band>) -> Self {
+        let memory = |band: &Band| band.surface.memory() + band.closest.as_ref().map_or(0, |g| g.memory());
+        let BandCounts { active_voxels, leaves, .. } = *counts;
+        VdbStatistics { active_voxels, leaves, memory: band.map_or(0, memory) }
     }
 }

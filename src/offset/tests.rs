@@ -73,9 +73,8 @@ fn crossings_lie_on_the_offset_surface_by_brute_force() {
     let distance = SignedDistance::new(&mesh, &topology);
     for r in [0.11, -0.07, 0.0] {
         let band_settings = settings(r, 0.08).resolve(&mesh).unwrap();
-        let (band, lists, _) = narrow_band::build(&distance, &band_settings, &run(2)).unwrap();
-        let (signs, nodes) = narrow_band::read_back(&band, &run(2)).unwrap();
-        let near = NearTriangles { nodes, lists: Some(lists) };
+        let NarrowBand { signs, near, .. } =
+            narrow_band::build(&distance, &band_settings, None, &run(2)).unwrap();
         let numbers = EdgeNumbers::new(&signs).unwrap();
         let lattice = band_settings.lattice;
         let (crossings, statistics) = solve(&distance, lattice, r, &signs, numbers, &near, &run(2)).unwrap();
@@ -109,14 +108,14 @@ fn lists_give_the_roots_of_the_hierarchy() {
         let distance = SignedDistance::new(&mesh, &topology);
         for r in [0.11, -0.07, 0.0] {
             let band_settings = settings(r, voxel).resolve(&mesh).unwrap();
-            let (band, lists, _) = narrow_band::build(&distance, &band_settings, &run(2)).unwrap();
-            let (signs, nodes) = narrow_band::read_back(&band, &run(2)).unwrap();
+            let NarrowBand { signs, near, .. } =
+                narrow_band::build(&distance, &band_settings, None, &run(2)).unwrap();
             let numbers = EdgeNumbers::new(&signs).unwrap();
             let solve = |lists| {
-                let near = NearTriangles { nodes: nodes.clone(), lists };
+                let near = NearTriangles { nodes: near.nodes.clone(), lists };
                 solve(&distance, band_settings.lattice, r, &signs, numbers.clone(), &near, &run(2)).unwrap()
             };
-            let (by_lists, counts) = solve(Some(lists));
+            let (by_lists, counts) = solve(near.lists.clone());
             let (by_queries, expected) = solve(None);
             assert!(by_lists.samples.len() > 1000);
             assert_eq!(by_lists.samples, by_queries.samples, "{r}");
@@ -132,9 +131,8 @@ fn plain_bisection_finds_the_roots_of_the_hybrid_method() {
     let distance = SignedDistance::new(&mesh, &topology);
     for r in [0.11, -0.07] {
         let band_settings = settings(r, 0.05).resolve(&mesh).unwrap();
-        let (band, lists, _) = narrow_band::build(&distance, &band_settings, &run(2)).unwrap();
-        let (signs, nodes) = narrow_band::read_back(&band, &run(2)).unwrap();
-        let near = NearTriangles { nodes, lists: Some(lists) };
+        let NarrowBand { signs, near, .. } =
+            narrow_band::build(&distance, &band_settings, None, &run(2)).unwrap();
         let numbers = EdgeNumbers::new(&signs).unwrap();
         let solve = |method| {
             let settings = EdgeSettings { lattice: band_settings.lattice, r, method };

@@ -6,6 +6,7 @@ use crate::band::{BandSettings, SignField};
 use crate::distance::SignedDistance;
 use crate::edge::{EdgeNumbers, NearTriangles};
 use crate::error::Error;
+use crate::offset::narrow_band::NarrowBand;
 use crate::offset::{Length, OffsetResult, OffsetSettings, VoxelSize, narrow_band, offset};
 use crate::run::RunSettings;
 
@@ -86,9 +87,7 @@ impl Lab<'_> {
         voxel: VoxelSize,
     ) -> Result<Option<Field>, Error> {
         let settings = self.offset_settings(model, fraction, voxel).resolve(&model.mesh)?;
-        let (band, lists, _) = narrow_band::build(distance, &settings, self.run)?;
-        let (signs, nodes) = narrow_band::read_back(&band, self.run)?;
-        let near = NearTriangles { nodes, lists: Some(lists) };
+        let NarrowBand { signs, near, .. } = narrow_band::build(distance, &settings, None, self.run)?;
         let numbers = self.run.install(|| EdgeNumbers::new(&signs))?;
         Ok((!numbers.is_empty()).then_some(Field { settings, signs, numbers, near }))
     }

@@ -1,0 +1,63 @@
+//! The band in OpenVDB, as it grows.
+
+use crate::band::{BandSettings, LEAF_DIM, LEAF_SIZE, LeafBatch};
+use crate::filter::Block;
+use crate::lattice::Ijk;
+use crate::slab::Slab;
+use crate::vdb::{Band, ClosestGrid, SurfaceGrid, VdbError};
+
+/// A band that is being filled.
+#[derive(Debug)]
+pub(crate) struct StoredBand {
+    surface: SurfaceGrid,
+    closest: ClosestGrid,
+}
+
+impl StoredBand {
+    pub(crate) fn new(settings: &BandSettings) -> Result<StoredBand, VdbError> {
+        Ok(StoredBand {
+            surface: SurfaceGrid::new(settings.lattice, settings.half_width)?,
+            closest: ClosestGrid::new(settings.lattice)?,
+        })
+    }
+
+    /// Adds the leaves and the inside blocks that `slab` owns.
+    pub(crate) fn insert(&mut self, batch: &LeafBatch, slab: Slab) -> Result<(), VdbError> {
+        // Runs of leaves that are owned: all of them, unless the batch crosses a plane between slabs.
+        let mut start = 0;
+        for run in batch.origins.chunk_by(|&a, &b| slab.owns(a) == slab.owns(b)) {
+            let end = start + run.len();
+            if slab.owns(run[0]) {
+                let nodes = start * LEAF_SIZE..end * LEAF_SIZE;
+                let active = &batch.active[start..end];
+                self.surface.insert_leaves(run, &batch.values[nodes.clone()], active)?;
+                self.closest.insert_leaves(run, &batch.closest[nodes], active)?;
+            }
+            start = end;
+        }
+        let (mut origins, mut sides) = (Vec::new(), Vec::new());
+        for &(origin, side) in &batch.inside_blocks {
+            owned_parts(Block { origin, side }, slab, &mut |block| {
+                origins.push(block.origin);
+                sides.push(block.side as u32);
+            });
+        }
+        self.surface.fill_inside(&origins, &sides)
+    }
+
+    /// The finished band.
+    pub(crate) fn finish(mut self) -> Band {
+        self.surface.prune();
+        Band { surface: self.surface, closest: Some(self.closest) }
+    }
+}
+
+/// The largest blocks that make up what `slab` owns of a block.
+fn owned_parts(block: Block, slab: Slab, visit: &mut impl FnMut(Block)) {
+    let last = block.origin + Ijk::new(block.side - LEAF_DIM, 0, 0);
+    if slab.owns(block.origin) && slab.owns(last) {
+        visit(block);
+    } else if slab.meets(block.origin, block.side) {
+        block.children().into_iter().for_each(|child| owned_parts(child, slab, visit));
+    }
+}
