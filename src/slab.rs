@@ -23,6 +23,12 @@ pub struct Slab {
     halo: i32,
 }
 
+impl Default for Slab {
+    fn default() -> Slab {
+        Slab::WHOLE
+    }
+}
+
 impl Slab {
     /// Everything.
     pub const WHOLE: Slab = Slab { from: i32::MIN, to: i32::MAX, halo: 0 };

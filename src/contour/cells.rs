@@ -13,6 +13,7 @@ use super::vertex::{self, Placement};
 use crate::band::{Ijk, LeafId, SignField};
 use crate::edge::{Crossings, bits};
 use crate::run::{Cancelled, PhaseGuard};
+use crate::slab::Slab;
 use rayon::prelude::*;
 
 /// The active cells with everything that is known of them.
@@ -23,6 +24,8 @@ pub struct Cells<'a> {
     pub crossings: &'a Crossings,
     /// The rounded lattice.
     pub grid: Grid,
+    /// The part of the lattice whose cells are counted.
+    pub slab: Slab,
     /// The numbering of the cells.
     pub numbers: &'a CellNumbers,
     /// The surface, if there is one to ask.
@@ -60,13 +63,14 @@ impl<'a> Cells<'a> {
         signs: &'a SignField,
         crossings: &'a Crossings,
         grid: Grid,
+        slab: Slab,
         numbers: &'a CellNumbers,
         surface: Option<&'a dyn Surface>,
         phase: &PhaseGuard<'_>,
     ) -> Result<(Cells<'a>, Placements), Cancelled> {
         let bend = surface.map_or(Bend::UNKNOWN, Bend::of);
         let features = Features::new(Vec::new(), 0, bend);
-        let mut cells = Cells { signs, crossings, grid, numbers, surface, features, cases: Vec::new() };
+        let mut cells = Cells { signs, crossings, grid, slab, numbers, surface, features, cases: Vec::new() };
         let mut cases = vec![CellCase::default(); numbers.len()];
         let mut vertices = vec![[0.0; 3]; numbers.vertices() as usize];
         let leaves: Vec<LeafId> = signs.leaves().collect();
@@ -86,13 +90,20 @@ impl<'a> Cells<'a> {
         let mut statistics = ContourStatistics::default();
         let mut wishes = Vec::with_capacity(placed.len());
         let mut features = Vec::new();
-        for (wished, found, counts) in placed {
+        for ((wished, found, counts), &leaf) in placed.into_iter().zip(&leaves) {
             wishes.push(wished);
             features.extend(found);
-            statistics += counts;
+            if cells.owns(leaf) {
+                statistics += counts;
+            }
         }
         cells.features = Features::new(features, vertices.len(), bend);
         Ok((cells, Placements { vertices, wishes, statistics }))
+    }
+
+    /// Whether a leaf is counted.
+    pub fn owns(&self, leaf: LeafId) -> bool {
+        self.slab.owns(self.signs.origin(leaf))
     }
 
     /// The case of `cell`.

@@ -9,6 +9,7 @@ use super::{ContourError, ContourSettings, face_vertex, reach};
 use crate::band::{Lattice, SignField};
 use crate::edge::Crossings;
 use crate::run::{Phase, RunSettings};
+use crate::slab::Slab;
 use std::time::Instant;
 
 /// The polygons of a few leaves are cut this often by each method, and the shortest time counts: an
@@ -45,7 +46,7 @@ pub fn cut_times<const N: usize>(
     let phase = run.phase(Phase::Contour, 2 * signs.len() as u64);
     run.install(|| {
         let numbers = CellNumbers::new(signs, run)?;
-        let (cells, placed) = Cells::place(signs, crossings, grid, &numbers, None, &phase)?;
+        let (cells, placed) = Cells::place(signs, crossings, grid, Slab::WHOLE, &numbers, None, &phase)?;
         let mut vertices = placed.vertices;
         let mut faces = face_vertex::face_vertices(&cells, &vertices, run)?;
         vertices.append(&mut faces.positions);

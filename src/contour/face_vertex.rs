@@ -38,13 +38,19 @@ struct Marks {
 #[derive(Debug)]
 pub struct FaceVertices {
     marks: Vec<Marks>,
-    /// Per leaf the number of its first face vertex.
+    /// Per leaf the number of its first face vertex, and the number after the last at the end.
     first: Vec<u32>,
     /// The positions, in the order leaf, cell, axis, pair.
     pub positions: Vec<[f64; 3]>,
 }
 
 impl FaceVertices {
+    /// The numbers of the face vertices of a leaf.
+    pub fn range(&self, leaf: LeafId) -> std::ops::Range<u32> {
+        let n = leaf.0 as usize;
+        self.first[n]..self.first[n + 1]
+    }
+
     /// The number of the face vertex between the cell `cell` of `leaf`, with case `case`, and the next cell
     /// along `axis`, on the pair with the crossing of `edge`, as an edge of `cell`; `None` if there is none.
     #[inline]
@@ -85,12 +91,12 @@ pub fn face_vertices(
         })
         .collect::<Result<_, Cancelled>>()?;
     let mut next = vertices.len() as u64;
-    let mut first = Vec::with_capacity(per_leaf.len());
+    let mut first = Vec::with_capacity(per_leaf.len() + 1);
     for positions in &per_leaf {
         first.push(u32::try_from(next).map_err(|_| TooManyVertices)?);
         next += positions.len() as u64;
     }
-    u32::try_from(next).map_err(|_| TooManyVertices)?;
+    first.push(u32::try_from(next).map_err(|_| TooManyVertices)?);
     Ok(FaceVertices { marks, first, positions: per_leaf.concat() })
 }
 

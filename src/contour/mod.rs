@@ -28,6 +28,7 @@
 //! | `face_vertex` | vertices on faces where a connection would get in another sheet's way |
 //! | `envelope`, `polygonize` | convex/concave analysis, and the triangles around an edge |
 //! | `output` | all polygons, collected to a mesh |
+//! | `order` | the finished mesh leaf by leaf, and the part that a slab owns |
 //! | `patch`, `editor`, `rounds` | changes of the finished mesh: the exact test, which to try, leaf by leaf |
 //! | `recover`, `refine` | vertices to places outside of their cells; the mesh to a tolerance |
 //! | `polygon_edges`, `cut_times` | the test that this analysis replaces, and the time of both |
@@ -47,6 +48,7 @@ mod features;
 mod grid;
 mod merge;
 mod numbering;
+mod order;
 mod output;
 mod patch;
 mod polygon_edges;
@@ -67,15 +69,17 @@ pub use polygonize::CutMethod;
 pub use statistics::ContourStatistics;
 pub use surface::{Creases, Surface};
 
-use crate::band::{Lattice, SignField};
+use crate::band::{LEAF_DIM, Lattice, SignField};
 use crate::edge::Crossings;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, Phase, RunSettings};
+use crate::slab::Slab;
 use cells::{Cells, Placements};
 use grid::Grid;
 use numbering::CellNumbers;
 use output::Triangulation;
 use recover::Wish;
+use std::ops::Range;
 
 /// Settings of [`contour`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -86,6 +90,10 @@ pub struct ContourSettings {
     pub cut: CutMethod,
     /// Refine the mesh until it is within this many voxels of the surface; `None` leaves it as the lattice gives it.
     pub tolerance: Option<f64>,
+    /// The part of the lattice that is counted.
+    pub slab: Slab,
+    /// The largest index, in size, of all nodes, where `signs` are not all; `None` if they are.
+    pub reach: Option<u32>,
 }
 
 /// Why [`contour`] failed.
@@ -121,8 +129,9 @@ pub struct TooManyVertices;
 /// The surface between the inside and the outside nodes of `signs`, through `crossings`. With `surface`, its creases
 /// and corners are asked for.
 ///
-/// Vertices come in the order cell vertices (by leaf, cell, sheet), face vertices, edge vertices, then those that
-/// splits added; triangles in the order of their grid edges, then those that splits added. The result is the same for every number of threads.
+/// Vertices and triangles come leaf by leaf: of a leaf, cell vertices (by cell, sheet), face vertices, edge vertices,
+/// then those that splits added; triangles in the order of their grid edges, then those that splits added. The
+/// result is the same for every number of threads.
 ///
 /// # Errors
 /// When the run is cancelled, the result is too large, or the lattice reaches too far from the origin for
@@ -138,16 +147,52 @@ pub fn contour(
     settings: &ContourSettings,
     run: &RunSettings,
 ) -> Result<(TriMesh, ContourStatistics), ContourError> {
+    let SlabContour { mesh, statistics, .. } =
+        contour_slab(signs, crossings, lattice, surface, settings, run)?;
+    Ok((mesh, statistics))
+}
+
+/// The contour of a slab and of what is computed around it.
+#[derive(Debug)]
+pub struct SlabContour {
+    /// The contour of all that is computed. Towards the planes where that ends it is closed in some way.
+    pub mesh: TriMesh,
+    /// The vertices that the slab owns.
+    pub vertices: Range<usize>,
+    /// The triangles that the slab owns. Some have vertices that its neighbours own.
+    pub triangles: Range<usize>,
+    /// Counts of what it owns.
+    pub statistics: ContourStatistics,
+}
+
+/// The same as [`contour`] for the part of the lattice that `settings.slab` names.
+///
+/// Vertices and triangles of the slabs of a lattice, one slab after the other, are those of the whole: what a slab owns is
+/// the same in both. For that, `signs` must reach [`halo`] nodes beyond the slab.
+///
+/// # Errors
+/// As [`contour`].
+///
+/// # Panics
+/// As [`contour`].
+pub fn contour_slab(
+    signs: &SignField,
+    crossings: &Crossings,
+    lattice: Lattice,
+    surface: Option<&dyn Surface>,
+    settings: &ContourSettings,
+    run: &RunSettings,
+) -> Result<SlabContour, ContourError> {
     assert_eq!(crossings.samples.len(), crossings.numbers.len(), "one sample for each crossing");
-    let grid = Grid::new(lattice, settings.precision, reach(signs, crossings))?;
+    let reach = settings.reach.unwrap_or_else(|| reach(signs, crossings));
+    let grid = Grid::new(lattice, settings.precision, reach)?;
     let phase = run.phase(Phase::Contour, 2 * signs.len() as u64);
     run.install(|| {
         let numbers = CellNumbers::new(signs, run)?;
-        let (cells, placed) = Cells::place(signs, crossings, grid, &numbers, surface, &phase)?;
+        let (cells, placed) = Cells::place(signs, crossings, grid, settings.slab, &numbers, surface, &phase)?;
         let Placements { mut vertices, mut wishes, mut statistics } = placed;
         let mut faces = face_vertex::face_vertices(&cells, &vertices, run)?;
         vertices.append(&mut faces.positions);
-        statistics.face_vertices = vertices.len() as u64 - u64::from(numbers.vertices());
         let Triangulation { mut mesh, far, statistics: polygons } =
             output::triangulate(&cells, &faces, vertices, settings.cut, &phase)?;
         statistics += polygons;
@@ -171,11 +216,27 @@ pub fn contour(
                 statistics.beyond_tolerance = Some(refined.beyond);
             }
         }
-        let mesh = mesh.into_mesh();
-        statistics.vertices = mesh.vertices.len() as u64;
-        statistics.triangles = mesh.triangles.len() as u64;
-        Ok((mesh, statistics))
+        let mesh = mesh.into_ordered();
+        // Leaves are sorted along x first.
+        let first = signs.leaves().take_while(|&leaf| !cells.owns(leaf)).count();
+        let owned = signs.leaves().skip(first).take_while(|&leaf| cells.owns(leaf)).count();
+        let (vertices, triangles) = mesh.of_leaves(first..first + owned);
+        statistics.vertices = vertices.len() as u64;
+        statistics.triangles = triangles.len() as u64;
+        Ok(SlabContour { mesh: mesh.mesh, vertices, triangles, statistics })
     })
+}
+
+/// How many nodes beyond a slab must be known, so that what it owns is as in a run over everything, for these settings.
+///
+/// Next to where the signs end, the contour is another one, and each stage carries the difference further. With the
+/// lower bit of a leaf's x as the first in its colour (see `rounds`), a leaf in the first half of a stage's rounds depends on
+/// leaves beside it as they were before the stage; one in the second half on what the first half made of those. That is
+/// two leaves for each stage. One more is wrong from the start, and the vertices of triangles at a plane lie up to
+/// two leaves beyond it.
+pub fn halo(settings: &ContourSettings) -> i32 {
+    let stages = recover::STAGES.len() + settings.tolerance.map_or(0, |_| refine::STAGES);
+    LEAF_DIM * (3 + 2 * stages as i32)
 }
 
 /// The largest index, in size, of a corner of an active cell.

@@ -1,10 +1,11 @@
 //! The polygons around all crossed edges, cut into triangles and collected to a mesh.
 
 use super::cell::Edge;
-use super::cells::{Cells, split};
+use super::cells::{Cells, split as cut};
 use super::envelope::Envelope;
 use super::face_vertex::FaceVertices;
 use super::feature::Asker;
+use super::order::VertexRun;
 use super::polygonize::{Cut, CutMethod, EDGE_VERTEX, Fit, Polygon, PolygonCorner, polygonize};
 use super::rounds::LeafMesh;
 use super::{ContourError, ContourStatistics, TooManyVertices};
@@ -60,7 +61,6 @@ pub fn triangulate(
 
     let count: usize = outputs.iter().map(|o| o.triangles.len()).sum();
     let hubs: usize = outputs.iter().map(|o| o.edge_vertices.len()).sum();
-    let quads = outputs.iter().map(|o| o.quads).sum::<u64>();
     // The number that stands for an edge vertex must stay free.
     if (vertices.len() + hubs) as u64 >= u64::from(EDGE_VERTEX) {
         return Err(TooManyVertices.into());
@@ -70,16 +70,27 @@ pub fn triangulate(
     let mut firsts = Vec::with_capacity(outputs.len());
     let mut ranges = Vec::with_capacity(outputs.len() + 1);
     let mut next = 0;
-    for output in &outputs {
+    let cell_runs = leaves.iter().map(|&leaf| (leaf, as_u32(cells.numbers.vertex_range(leaf))));
+    let face_runs = leaves.iter().map(|&leaf| (leaf, faces.range(leaf)));
+    let mut runs: Vec<VertexRun> =
+        cell_runs.chain(face_runs).map(|(leaf, numbers)| VertexRun { leaf, numbers }).collect();
+    for (output, &leaf) in outputs.iter().zip(&leaves) {
         ranges.push(next);
         next += output.triangles.len();
-        firsts.push(vertices.len() as u32 - shared);
+        let first = vertices.len() as u32;
+        firsts.push(first - shared);
         vertices.extend_from_slice(&output.edge_vertices);
+        runs.push(VertexRun { leaf, numbers: first..vertices.len() as u32 });
     }
+    runs.retain(|run| !run.numbers.is_empty());
     ranges.push(next);
     let far = outputs.iter_mut().map(|output| std::mem::take(&mut output.far)).collect();
+    let owned = || outputs.iter().zip(&leaves).filter(|(_, leaf)| cells.owns(**leaf));
+    let quads: u64 = owned().map(|(output, _)| output.quads).sum();
+    let split: u64 = owned().map(|(output, _)| output.edge_vertices.len() as u64).sum();
+    let face_vertices = owned().map(|(_, &leaf)| faces.range(leaf).len() as u64).sum();
     let mut triangles = vec![[0; 3]; count];
-    let parts = split(&mut triangles, outputs.iter().map(|o| o.triangles.len()));
+    let parts = cut(&mut triangles, outputs.iter().map(|o| o.triangles.len()));
     outputs.into_par_iter().zip(firsts).zip(parts).with_min_len(16).for_each(|((output, first), part)| {
         for (to, from) in part.iter_mut().zip(output.triangles) {
             *to = from.map(|v| if v < shared { v } else { v + first });
@@ -87,13 +98,19 @@ pub fn triangulate(
     });
     let statistics = ContourStatistics {
         quads,
-        diagonal: quads - hubs as u64,
-        split: hubs as u64,
+        diagonal: quads - split,
+        split,
+        face_vertices,
         ..ContourStatistics::default()
     };
     let added = vec![Vec::new(); leaves.len()];
-    let mesh = LeafMesh { mesh: TriMesh { vertices, triangles }, ranges, added, gone: Vec::new() };
+    let mesh = LeafMesh { mesh: TriMesh { vertices, triangles }, ranges, added, runs, gone: Vec::new() };
     Ok(Triangulation { mesh, far, statistics })
+}
+
+/// A range of numbers, which fit.
+fn as_u32(range: std::ops::Range<usize>) -> std::ops::Range<u32> {
+    range.start as u32..range.end as u32
 }
 
 fn in_leaf(

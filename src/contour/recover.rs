@@ -51,7 +51,7 @@ pub struct Recovered {
 
 /// What is done in one pass over the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stage {
+pub enum Stage {
     /// Vertices go to their places.
     Grant,
     /// What is still far from the surface is mended.
@@ -60,7 +60,7 @@ enum Stage {
 
 /// A leaf that is far from a neighbour's changes in one pass can be beside them in the next, so what is left is mended
 /// once more. A third time would gain a tenth of that.
-const STAGES: [Stage; 3] = [Stage::Grant, Stage::Mend, Stage::Mend];
+pub const STAGES: [Stage; 3] = [Stage::Grant, Stage::Mend, Stage::Mend];
 
 /// Moves vertices of the finished mesh to where they belong. `wishes` has a list for each leaf.
 ///
@@ -96,6 +96,9 @@ pub fn recover(
             },
             |(leaf, (done, is_open))| {
                 next[leaf.0 as usize] = (done.refused, is_open);
+                if !cells.owns(leaf) {
+                    return;
+                }
                 recovered.moved += done.moved;
                 recovered.merged += done.merged;
                 recovered.flipped += done.flipped;
@@ -104,7 +107,8 @@ pub fn recover(
         )?;
         open = next;
     }
-    recovered.refused = open.iter().map(|(refused, _)| refused).sum();
+    let owned = cells.signs.leaves().zip(&open).filter(|(leaf, _)| cells.owns(*leaf));
+    recovered.refused = owned.map(|(_, (refused, _))| refused).sum();
     Ok(recovered)
 }
 

@@ -9,11 +9,15 @@ use super::editor::Editor;
 use super::patch::Bounds;
 use super::rounds::LeafMesh;
 use super::surface::Surface;
+use crate::band::LeafId;
 use crate::run::{Cancelled, RunSettings};
 
 /// Passes over the mesh. Each halves the edges that are too far, so that the error of smooth parts shrinks to a
 /// quarter: to 1/256 in all. More passes would let a tolerance that is too small multiply the mesh without end.
 const PASSES: u32 = 4;
+
+/// All passes, with the one that only counts.
+pub const STAGES: usize = PASSES as usize + 1;
 
 /// Between the places that are looked at the error can be larger than there: they must meet this share of the
 /// tolerance.
@@ -51,6 +55,7 @@ pub fn refine(
         let numbers: Vec<Vec<usize>> =
             cells.signs.leaves().map(|leaf| mesh.triangles(leaf).collect()).collect();
         let mut done = Refined::default();
+        let mut changed = false;
         mesh.in_rounds(
             cells,
             run,
@@ -62,9 +67,13 @@ pub fn refine(
                 let mut editor =
                     Editor { patch, surface, grid, features, tolerance, trusting: false, hint: 0 };
                 let done = editor.refine(&numbers[leaf.0 as usize], is_last);
-                (editor.patch, done)
+                (editor.patch, (leaf, done))
             },
-            |of_leaf: Refined| {
+            |(leaf, of_leaf): (LeafId, Refined)| {
+                changed |= of_leaf.split + of_leaf.moved > 0;
+                if !cells.owns(leaf) {
+                    return;
+                }
                 done.split += of_leaf.split;
                 done.moved += of_leaf.moved;
                 done.beyond += of_leaf.beyond;
@@ -74,7 +83,7 @@ pub fn refine(
         if is_last {
             break;
         }
-        is_last = done.split + done.moved == 0;
+        is_last = !changed;
     }
     Ok(refined)
 }

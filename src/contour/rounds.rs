@@ -3,6 +3,7 @@
 
 use super::cells::Cells;
 use super::feature::REACH;
+use super::order::VertexRun;
 use super::patch::{Bounds, Changes, NEW_TRIANGLE, NEW_VERTEX, Patch, PatchTriangle};
 use crate::band::LeafId;
 use crate::lattice::{Ijk, LEAF_DIM};
@@ -37,12 +38,14 @@ pub struct LeafMesh {
     pub ranges: Vec<usize>,
     /// Triangles that were added later, by leaf.
     pub added: Vec<Vec<usize>>,
+    /// Which vertices belong to which leaf: each to one.
+    pub runs: Vec<VertexRun>,
     /// The vertices that are gone, in the order in which they went.
     pub gone: Vec<u32>,
 }
 
 /// The vertices of a triangle that is gone: patches are not made when vertices have numbers that large.
-const GONE: [u32; 3] = [u32::MAX; 3];
+pub const GONE: [u32; 3] = [u32::MAX; 3];
 
 impl LeafMesh {
     /// The numbers of the triangles of a leaf.
@@ -50,30 +53,6 @@ impl LeafMesh {
         let n = leaf.0 as usize;
         let all = (self.ranges[n]..self.ranges[n + 1]).chain(self.added[n].iter().copied());
         all.filter(|&t| self.mesh.triangles[t] != GONE)
-    }
-
-    /// The mesh without what is gone, in the same order.
-    pub fn into_mesh(self) -> TriMesh {
-        let LeafMesh { mut mesh, mut gone, .. } = self;
-        if gone.is_empty() {
-            return mesh;
-        }
-        gone.sort_unstable();
-        mesh.triangles.retain(|t| *t != GONE);
-        // By old number the new one.
-        let mut numbers = vec![0; mesh.vertices.len()];
-        let (mut next, mut gone) = (0, gone.into_iter().peekable());
-        for (old, number) in numbers.iter_mut().enumerate() {
-            if gone.next_if_eq(&(old as u32)).is_none() {
-                *number = next;
-                mesh.vertices[next as usize] = mesh.vertices[old];
-                next += 1;
-            }
-        }
-        mesh.vertices.truncate(next as usize);
-        let renumber = |t: &mut [u32; 3]| *t = t.map(|v| numbers[v as usize]);
-        mesh.triangles.par_iter_mut().with_min_len(1 << 14).for_each(renumber);
-        mesh
     }
 
     /// Has `work` change the patches around the leaves that `places` gives points for, each by itself. The patch of
@@ -159,6 +138,9 @@ impl LeafMesh {
         mesh.vertices.resize(first_vertex + changes.new_vertices as usize, [0.0; 3]);
         mesh.triangles.resize(first_triangle + changes.new_triangles, [0; 3]);
         self.added[leaf.0 as usize].extend(first_triangle..mesh.triangles.len());
+        if changes.new_vertices > 0 {
+            self.runs.push(VertexRun { leaf, numbers: first_vertex as u32..mesh.vertices.len() as u32 });
+        }
         let vertex = |v: u32| v.checked_sub(NEW_VERTEX).map_or(v, |n| first_vertex as u32 + n);
         let triangle = |t: usize| t.checked_sub(NEW_TRIANGLE).map_or(t, |n| first_triangle + n);
         for (number, position) in changes.moved {

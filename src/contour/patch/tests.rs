@@ -1,5 +1,6 @@
 use super::*;
 use crate::band::LeafId;
+use crate::contour::order::VertexRun;
 use crate::contour::rounds::LeafMesh;
 use crate::mesh::{Topology, TriMesh, shapes};
 use crate::verify::tests::audit::audit;
@@ -22,9 +23,11 @@ fn patch(mesh: &TriMesh) -> Patch {
 /// The mesh with what a patch changed.
 fn changed(mesh: &TriMesh, patch: Patch) -> TriMesh {
     let ranges = vec![0, mesh.triangles.len()];
-    let mut changed = LeafMesh { mesh: mesh.clone(), ranges, added: vec![Vec::new()], gone: Vec::new() };
+    let runs = vec![VertexRun { leaf: LeafId(0), numbers: 0..mesh.vertices.len() as u32 }];
+    let mut changed =
+        LeafMesh { mesh: mesh.clone(), ranges, added: vec![Vec::new()], gone: Vec::new(), runs };
     changed.apply(LeafId(0), patch.changes);
-    changed.into_mesh()
+    changed.into_ordered().mesh
 }
 
 fn octahedron(centre: Point) -> TriMesh {

@@ -1,0 +1,78 @@
+//! The finished mesh leaf by leaf: what belongs to a part of the lattice is one piece of it.
+//!
+//! While it is made, a mesh has its vertices by kind, and what changes add at the end. That order depends on the whole
+//! lattice. In the order of leaves, the vertices and triangles of some leaves stand together, wherever the rest is made.
+
+use super::rounds::{GONE, LeafMesh};
+use crate::band::LeafId;
+use crate::mesh::TriMesh;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Vertices with consecutive numbers that belong to one leaf.
+#[derive(Clone, Debug)]
+pub struct VertexRun {
+    /// The leaf.
+    pub leaf: LeafId,
+    /// Their numbers.
+    pub numbers: Range<u32>,
+}
+
+/// A mesh in the order of its leaves.
+#[derive(Debug)]
+pub struct OrderedMesh {
+    /// Vertices and triangles by leaf, those of a leaf in the order in which they were made.
+    pub mesh: TriMesh,
+    /// By leaf the number of its first vertex, and the number of all at the end.
+    vertices: Vec<usize>,
+    /// The same for triangles.
+    triangles: Vec<usize>,
+}
+
+impl OrderedMesh {
+    /// The vertices and the triangles of consecutive leaves.
+    pub fn of_leaves(&self, leaves: Range<usize>) -> (Range<usize>, Range<usize>) {
+        let of = |firsts: &[usize]| firsts[leaves.start]..firsts[leaves.end];
+        (of(&self.vertices), of(&self.triangles))
+    }
+}
+
+impl LeafMesh {
+    /// The mesh without what is gone, leaf by leaf.
+    pub fn into_ordered(mut self) -> OrderedMesh {
+        self.gone.sort_unstable();
+        // Stable: cell vertices, face vertices, edge vertices, then those that were added.
+        self.runs.sort_by_key(|run| run.leaf);
+        let leaves = self.ranges.len() - 1;
+        let mut vertices = Vec::with_capacity(self.mesh.vertices.len() - self.gone.len());
+        let mut numbers = vec![0; self.mesh.vertices.len()];
+        let mut firsts = Vec::with_capacity(leaves + 1);
+        for VertexRun { leaf, numbers: run } in &self.runs {
+            firsts.resize(firsts.len().max(leaf.0 as usize + 1), vertices.len());
+            let mut gone = self.gone[self.gone.partition_point(|&v| v < run.start)..].iter().peekable();
+            for old in run.clone() {
+                if gone.next_if_eq(&&old).is_none() {
+                    numbers[old as usize] = vertices.len() as u32;
+                    vertices.push(self.mesh.vertices[old as usize]);
+                }
+            }
+        }
+        firsts.resize(leaves + 1, vertices.len());
+        self.mesh.vertices = Vec::new();
+
+        let of_leaf = |leaf: usize| self.triangles(LeafId(leaf as u32));
+        let counts: Vec<usize> = (0..leaves).into_par_iter().map(|leaf| of_leaf(leaf).count()).collect();
+        let mut ends = vec![0; leaves + 1];
+        for (leaf, count) in counts.iter().enumerate() {
+            ends[leaf + 1] = ends[leaf] + count;
+        }
+        let mut triangles = vec![GONE; ends[leaves]];
+        let parts = super::cells::split(&mut triangles, counts.into_iter());
+        parts.into_par_iter().enumerate().with_min_len(16).for_each(|(leaf, part)| {
+            for (to, number) in part.iter_mut().zip(of_leaf(leaf)) {
+                *to = self.mesh.triangles[number].map(|v| numbers[v as usize]);
+            }
+        });
+        OrderedMesh { mesh: TriMesh { vertices, triangles }, vertices: firsts, triangles: ends }
+    }
+}
