@@ -55,6 +55,14 @@ impl Slab {
         x < self.to && x.saturating_add(side) > self.from
     }
 
+    /// Leaves between the leaf at `origin`, which is computed, and the nearer one of the planes where that ends. Up to `most`:
+    /// no further is looked.
+    pub fn depth(&self, origin: Ijk, most: i32) -> i32 {
+        let at = |leaves: i32| origin + Ijk::new(LEAF_DIM * leaves, 0, 0);
+        let is_open = |n: &i32| self.computes(at(n + 1), LEAF_DIM) && self.computes(at(-n - 1), LEAF_DIM);
+        (0..most).find(|n| !is_open(n)).unwrap_or(most)
+    }
+
     /// Whether any of the nodes of the block at `origin` with the given side are computed.
     pub fn computes(&self, origin: Ijk, side: i32) -> bool {
         let x = origin.0[0];
@@ -88,6 +96,8 @@ mod tests {
         );
         assert_eq!((computed[0], computed[computed.len() - 1]), (-16, 48));
         assert_eq!((owned[0], owned[owned.len() - 1]), (0, 32));
+        let depth = |x| slab.depth(Ijk::new(x, 0, 0), 3);
+        assert_eq!([-16, -8, 0, 8, 16, 32, 40, 48].map(depth), [0, 1, 2, 3, 3, 2, 1, 0]);
         // A block that reaches in.
         assert!(slab.computes(Ijk::new(-64, 0, 0), 64) && !slab.computes(Ijk::new(-64, 0, 0), 32));
     }

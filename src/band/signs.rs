@@ -6,6 +6,7 @@
 //! for the sign of a node outside it.
 
 use crate::lattice::{Axis, Ijk, LEAF_DIM};
+use crate::slab::Slab;
 use rayon::prelude::*;
 
 /// The number of a leaf within its [`SignField`].
@@ -22,6 +23,8 @@ pub struct SignField {
     inside: Vec<LeafMask>,
     /// Per leaf the neighbour at offset (dx, dy, dz), number 9 (dx+1) + 3 (dy+1) + (dz+1).
     neighbours: Vec<[u32; 27]>,
+    /// What is computed: the field ends at its planes as if cut off, without a ring.
+    slab: Slab,
 }
 
 const NONE: u32 = u32::MAX;
@@ -54,9 +57,12 @@ impl SignField {
     /// `missing` is asked once for all neighbouring leaves that the band lacks (a sorted list of their
     /// origins): whether each is inside as a whole. Such a leaf is uniform in every band, since a node
     /// next to a sign change is valid (\[LW11\] Definition 1) and thus in a leaf of the band.
+    ///
+    /// Where what `slab` computes ends, there is no ring: the field is cut off, and so is the surface.
     pub fn new<E>(
         origins: &[Ijk],
         inside: &[LeafMask],
+        slab: Slab,
         missing: impl FnOnce(&[Ijk]) -> Result<Vec<bool>, E>,
     ) -> Result<Self, E> {
         assert_eq!(origins.len(), inside.len(), "one mask for each leaf");
@@ -70,7 +76,8 @@ impl SignField {
             .flat_map_iter(|slot| {
                 let found = find_shifted(&band, slot);
                 let missing = band.iter().zip(found).filter(|(_, found)| *found == NONE);
-                missing.map(|(&origin, _)| neighbour_origin(origin, slot)).collect::<Vec<_>>()
+                let ring = missing.map(|(&origin, _)| neighbour_origin(origin, slot));
+                ring.filter(|&origin| slab.computes(origin, LEAF_DIM)).collect::<Vec<_>>()
             })
             .collect();
         ring.par_sort_unstable();
@@ -84,7 +91,7 @@ impl SignField {
         let by_slot: Vec<Vec<u32>> =
             (0..27usize).into_par_iter().map(|slot| find_shifted(&origins, slot)).collect();
         let neighbours = (0..origins.len()).map(|n| std::array::from_fn(|slot| by_slot[slot][n])).collect();
-        Ok(SignField { origins, inside, neighbours })
+        Ok(SignField { origins, inside, neighbours, slab })
     }
 
     /// The number of leaves, ring included.
@@ -105,6 +112,16 @@ impl SignField {
     /// The lowest node of a leaf.
     pub fn origin(&self, leaf: LeafId) -> Ijk {
         self.origins[leaf.0 as usize]
+    }
+
+    /// Leaves between a leaf and the plane where the field is cut off, up to `most`.
+    pub fn depth(&self, leaf: LeafId, most: i32) -> i32 {
+        self.slab.depth(self.origin(leaf), most)
+    }
+
+    /// Whether the field is cut off before the first (`step` -1) or after the last (`step` 1) nodes of a leaf along x.
+    pub fn is_cut(&self, leaf: LeafId, step: i32) -> bool {
+        !self.slab.computes(self.origin(leaf) + Ijk::new(step * LEAF_DIM, 0, 0), LEAF_DIM)
     }
 
     /// The nodes of a leaf that are inside the offset solid (phi < 0).
@@ -176,7 +193,8 @@ mod tests {
                 mask
             })
             .collect();
-        SignField::new(&origins, &inside, |ring| Ok::<_, Infallible>(vec![false; ring.len()])).unwrap()
+        SignField::new(&origins, &inside, Slab::WHOLE, |ring| Ok::<_, Infallible>(vec![false; ring.len()]))
+            .unwrap()
     }
 
     #[test]

@@ -19,7 +19,7 @@ use super::grid::Grid;
 use super::numbering::{CellId, CellNumbers, locate};
 use super::sheets::{Case, Pair};
 use super::{ContourError, TooManyVertices};
-use crate::band::{Axis, Ijk, LeafId, SignField};
+use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, SignField};
 use crate::edge::{Crossings, bits};
 use crate::geom::predicates::orient3d;
 use crate::run::{Cancelled, RunSettings};
@@ -111,7 +111,8 @@ fn in_leaf(cells: &Cells<'_>, vertices: &[[f64; 3]], leaf: LeafId, marks: &mut [
         let case = cells.case(cell);
         for axis in Axis::ALL {
             let face = Face::upper(axis);
-            if case.pairs(face).is_empty() {
+            let is_last = axis == Axis::X && local.0[0] == LEAF_DIM - 2 && signs.is_cut(leaf, 1);
+            if is_last || case.pairs(face).is_empty() {
                 continue;
             }
             let (_, next) = numbers.locate(signs, leaf, local.next(axis).0);

@@ -155,7 +155,7 @@ pub fn contour(
 /// The contour of a slab and of what is computed around it.
 #[derive(Debug)]
 pub struct SlabContour {
-    /// The contour of all that is computed. Towards the planes where that ends it is closed in some way.
+    /// The contour of all that is computed. It has a border where that ends.
     pub mesh: TriMesh,
     /// The vertices that the slab owns.
     pub vertices: Range<usize>,
@@ -229,14 +229,14 @@ pub fn contour_slab(
 
 /// How many nodes beyond a slab must be known, so that what it owns is as in a run over everything, for these settings.
 ///
-/// Next to where the signs end, the contour is another one, and each stage carries the difference further. With the
+/// Where the signs are cut off, the contour has a border, and each stage carries the difference further. With the
 /// lower bit of a leaf's x as the first in its colour (see `rounds`), a leaf in the first half of a stage's rounds depends on
 /// leaves beside it as they were before the stage; one in the second half on what the first half made of those. That is
-/// two leaves for each stage. One more is wrong from the start, and the vertices of triangles at a plane lie up to
-/// two leaves beyond it.
+/// two leaves for each stage. Those at the cut are not worked on, and the vertices of triangles at a plane lie up to two
+/// leaves beyond it.
 pub fn halo(settings: &ContourSettings) -> i32 {
     let stages = recover::STAGES.len() + settings.tolerance.map_or(0, |_| refine::STAGES);
-    LEAF_DIM * (3 + 2 * stages as i32)
+    LEAF_DIM * (rounds::AT_CUT + 2 * stages as i32 + 2)
 }
 
 /// The largest index, in size, of a corner of an active cell.

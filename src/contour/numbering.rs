@@ -100,6 +100,10 @@ impl CellNumbers {
                 let mut cells = LeafCells { active: [0; 8], before: [0; 8], first_cell: 0, first_vertex: 0 };
                 if let Some(corners) = CornerSigns::new(signs, leaf) {
                     cells.active = corners.active();
+                    // Half of the corners of the last cells are not known.
+                    if signs.is_cut(leaf, 1) {
+                        cells.active[7] = 0;
+                    }
                     let mut count = 0;
                     for (word, before) in cells.active.iter().zip(&mut cells.before) {
                         *before = count;

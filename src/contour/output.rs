@@ -9,7 +9,7 @@ use super::order::VertexRun;
 use super::polygonize::{Cut, CutMethod, EDGE_VERTEX, Fit, Polygon, PolygonCorner, polygonize};
 use super::rounds::LeafMesh;
 use super::{ContourError, ContourStatistics, TooManyVertices};
-use crate::band::{Axis, Ijk, LeafId};
+use crate::band::{Axis, Ijk, LEAF_DIM, LeafId};
 use crate::edge::EdgeId;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, PhaseGuard};
@@ -213,6 +213,9 @@ pub fn for_polygons(
     let origin = cells.signs.origin(leaf);
     for (id, (axis, number)) in numbers.range(leaf).map(EdgeId).zip(numbers.in_leaf(leaf)) {
         let local = Ijk::in_leaf(Ijk::default(), number);
+        if axis != Axis::X && is_at_cut(cells, leaf, local) {
+            continue;
+        }
         let node = origin + local;
         let low_is_inside = inside[number >> 6] >> (number & 63) & 1 == 1;
         let ends = [grid.node(node), grid.node(node.next(axis))];
@@ -227,6 +230,16 @@ pub fn for_polygons(
         let sides = cells.features.sides(polygon.corners().iter().map(|c| c.vertex));
         let fit = Fit::new(point, sample.normal.map(f64::from), sides, grid.voxel());
         visit(EdgePolygon { polygon, envelope, fit, hint: sample.hint, node, along: (axis, sample.t) });
+    }
+}
+
+/// Whether not all cells around the edges across x from node `local` of `leaf` are there, since the field is cut off.
+fn is_at_cut(cells: &Cells<'_>, leaf: LeafId, local: Ijk) -> bool {
+    const LAST: i32 = LEAF_DIM - 1;
+    match local.0[0] {
+        0 => cells.signs.is_cut(leaf, -1),
+        LAST => cells.signs.is_cut(leaf, 1),
+        _ => false,
     }
 }
 

@@ -29,6 +29,9 @@ const STRAY: f64 = 4.0;
 const _: () = assert!(STRAY >= MARGIN, "a leaf must be able to change its own triangles");
 const _: () = assert!(STRAY + MARGIN < LEAF_DIM as f64, "a patch must hold all triangles in its bounds");
 
+/// Leaves that are left as they are where the field is cut off: there the mesh has a border.
+pub const AT_CUT: i32 = 2;
+
 /// A mesh whose triangles are known by leaf.
 #[derive(Debug)]
 pub struct LeafMesh {
@@ -75,7 +78,7 @@ impl LeafMesh {
         }
         debug_assert!(self.is_at_home(cells), "a triangle begins far from its leaf");
         let mut by_colour: [Vec<LeafId>; 8] = Default::default();
-        for leaf in cells.signs.leaves() {
+        for leaf in cells.signs.leaves().filter(|&leaf| cells.signs.depth(leaf, AT_CUT) == AT_CUT) {
             by_colour[colour(cells.signs.origin(leaf).0)].push(leaf);
         }
         for leaves in by_colour {

@@ -9,6 +9,7 @@ use crate::candidates::{CandidateLists, block_in_leaf};
 use crate::distance::SignedDistance;
 use crate::lattice::{Axis, Ijk, LEAF_SIZE, Lattice};
 use crate::run::{Cancelled, Phase, RunSettings};
+use crate::slab::Slab;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -101,6 +102,8 @@ pub struct EdgeSettings {
     pub r: f64,
     /// The way to the roots.
     pub method: RootMethod,
+    /// The part of the lattice whose edges are counted; all are intersected.
+    pub slab: Slab,
 }
 
 /// The intersections of the edges numbered by `numbers` with the surface at distance `r`.
@@ -116,7 +119,7 @@ pub fn solve(
     near: &NearTriangles,
     run: &RunSettings,
 ) -> Result<(Crossings, EdgeStatistics), Cancelled> {
-    let settings = EdgeSettings { lattice, r, method: RootMethod::Following };
+    let settings = EdgeSettings { lattice, r, method: RootMethod::Following, slab: Slab::WHOLE };
     solve_by(distance, &settings, signs, numbers, near, run)
 }
 
@@ -132,7 +135,7 @@ pub fn solve_by(
     near: &NearTriangles,
     run: &RunSettings,
 ) -> Result<(Crossings, EdgeStatistics), Cancelled> {
-    let EdgeSettings { lattice, r, method } = *settings;
+    let EdgeSettings { lattice, r, method, slab } = *settings;
     let solver = Solver { distance, r, voxel: lattice.voxel };
     let mut samples = vec![Crossing { t: 0.0, normal: [0.0; 3], hint: 0 }; numbers.len()];
     let mut rest: &mut [Crossing] = &mut samples;
@@ -151,7 +154,8 @@ pub fn solve_by(
             .into_par_iter()
             .map(|(id, samples)| {
                 phase.advance(1)?;
-                Ok(leaf.solve(id, samples))
+                let counts = leaf.solve(id, samples);
+                Ok(if slab.owns(signs.origin(id)) { counts } else { EdgeStatistics::default() })
             })
             .try_reduce(EdgeStatistics::default, |mut a, b| {
                 a += b;

@@ -10,7 +10,10 @@
 //! for every number of threads.
 
 pub(crate) mod narrow_band;
+mod in_slabs;
+mod on_slab;
 mod resolving;
+mod slabs;
 mod settings;
 mod statistics;
 mod stored_band;
@@ -20,23 +23,23 @@ mod tests;
 mod unsuitable;
 
 pub use crate::contour::Precision;
+pub use in_slabs::{Cut, PieceSink, offset_in_slabs};
 pub use settings::{Length, OffsetSettings, SettingsError, SignMode, Tolerance, VoxelSize};
 pub use statistics::{EngineTimes, OffsetStatistics, VdbStatistics};
 pub use unsuitable::{EmptyResult, InputError, MemoryError};
 
 use crate::band::BandSettings;
-use crate::contour::contour;
+use crate::contour::SlabContour;
 use crate::distance::SignedDistance;
-use crate::edge::{EdgeNumbers, NearTriangles, solve};
 use crate::error::Error;
 use crate::mesh::{Topology, TriMesh};
 use crate::run::{Phase, RunSettings};
-use crate::unseen;
+use crate::unseen::Unseen;
 use crate::vdb::Band;
-use narrow_band::NarrowBand;
+use on_slab::on_slab;
+use resolving::until_seen;
 use std::time::Instant;
 use stored_band::StoredBand;
-use surface::OffsetSurface;
 
 /// What [`offset`] returns.
 #[derive(Debug)]
@@ -61,19 +64,75 @@ pub struct OffsetResult {
 /// - [`Error::Contour`], [`Error::TooManyEdges`]: the lattice is too fine for the precision or the indices.
 /// - [`Error::Cancelled`].
 pub fn offset(mesh: &TriMesh, settings: &OffsetSettings, run: &RunSettings) -> Result<OffsetResult, Error> {
-    let topology = run.install(|| Topology::new(mesh));
-    unsuitable::check_input(mesh, &topology, settings.sign)?;
-    let band_settings = settings.resolve(mesh)?;
-    unsuitable::check_memory(mesh, &band_settings, settings.max_memory)?;
+    Prepared::with(mesh, settings, run, |prepared| {
+        let fits = |band_settings: &BandSettings| {
+            unsuitable::check_memory(mesh, band_settings, settings.max_memory).is_ok()
+        };
+        unsuitable::check_memory(mesh, &prepared.band_settings, settings.max_memory)?;
+        until_seen(prepared, fits, |band_settings, times| {
+            on_lattice(prepared.distance, settings, band_settings, times, run)
+        })
+    })
+}
 
-    let started = Instant::now();
-    let distance = {
-        let _phase = run.phase(Phase::Hierarchy, 0);
-        run.install(|| SignedDistance::new(mesh, &topology))
-    };
-    run.check()?;
-    let times = EngineTimes { hierarchy: started.elapsed().as_secs_f64(), ..EngineTimes::default() };
-    resolving::until_seen(&distance, settings, band_settings, times, run)
+/// The narrow band of an offset, in OpenVDB grids, and no mesh: no edge is intersected.
+///
+/// # Errors
+/// As [`offset()`].
+pub fn offset_band(
+    mesh: &TriMesh,
+    settings: &OffsetSettings,
+    run: &RunSettings,
+) -> Result<OffsetResult, Error> {
+    Prepared::with(mesh, settings, run, |prepared| {
+        let Prepared { distance, ref band_settings, times, .. } = *prepared;
+        unsuitable::check_memory(mesh, band_settings, settings.max_memory)?;
+        let mut statistics = OffsetStatistics::new(band_settings, times);
+        let started = Instant::now();
+        let mut stored = StoredBand::new(band_settings)?;
+        statistics.add_band(&narrow_band::store(distance, band_settings, &mut stored, run)?);
+        let band = stored.finish();
+        statistics.times.band += started.elapsed().as_secs_f64();
+        if statistics.vdb.leaves == 0 {
+            return Err(EmptyResult::explain(distance, band_settings).into());
+        }
+        statistics.set_memory(Some(&band));
+        Ok(OffsetResult { mesh: TriMesh::default(), band: Some(band), statistics })
+    })
+}
+
+/// The input, ready for work on a lattice.
+#[derive(Clone, Copy)]
+pub(crate) struct Prepared<'a> {
+    distance: &'a SignedDistance<'a>,
+    settings: &'a OffsetSettings,
+    /// The lattice that was asked for.
+    band_settings: BandSettings,
+    /// What was spent so far.
+    times: EngineTimes,
+    run: &'a RunSettings,
+}
+
+impl Prepared<'_> {
+    /// Checks the input, builds its hierarchy, and hands both to `work`.
+    fn with<T>(
+        mesh: &TriMesh,
+        settings: &OffsetSettings,
+        run: &RunSettings,
+        work: impl FnOnce(&Prepared<'_>) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        let topology = run.install(|| Topology::new(mesh));
+        unsuitable::check_input(mesh, &topology, settings.sign)?;
+        let band_settings = settings.resolve(mesh)?;
+        let started = Instant::now();
+        let distance = {
+            let _phase = run.phase(Phase::Hierarchy, 0);
+            run.install(|| SignedDistance::new(mesh, &topology))
+        };
+        run.check()?;
+        let times = EngineTimes { hierarchy: started.elapsed().as_secs_f64(), ..EngineTimes::default() };
+        work(&Prepared { distance: &distance, settings, band_settings, times, run })
+    }
 }
 
 /// The offset surface on one lattice. `times` is what was spent before.
@@ -81,45 +140,18 @@ fn on_lattice(
     distance: &SignedDistance,
     settings: &OffsetSettings,
     band_settings: &BandSettings,
-    mut times: EngineTimes,
+    times: EngineTimes,
     run: &RunSettings,
 ) -> Result<OffsetResult, Error> {
-    let (lattice, r) = (band_settings.lattice, band_settings.r);
-    let started = Instant::now();
+    let mut statistics = OffsetStatistics::new(band_settings, times);
     let mut stored = settings.keep_band.then(|| StoredBand::new(band_settings)).transpose()?;
-    let NarrowBand { signs, near, counts } =
-        narrow_band::build(distance, band_settings, stored.as_mut(), run)?;
-    let band = stored.map(StoredBand::finish);
-    times.band += started.elapsed().as_secs_f64();
-
-    let started = Instant::now();
-    let numbers = run.install(|| EdgeNumbers::new(&signs))?;
-    if numbers.is_empty() {
+    let done = on_slab(distance, settings, band_settings, stored.as_mut(), &mut statistics, run)?;
+    let Some((SlabContour { mesh, .. }, lost)) = done else {
         return Err(EmptyResult::explain(distance, band_settings).into());
-    }
-    let (crossings, edges) = solve(distance, lattice, r, &signs, numbers, &near, run)?;
-    let suspects = unseen::suspects(distance, r, lattice, &signs, &near, run)?;
-    let NearTriangles { lists, .. } = near;
-    times.edges += started.elapsed().as_secs_f64();
-
-    let started = Instant::now();
-    let contour_settings = settings.contour(lattice);
-    let surface = OffsetSurface { distance, r, lists: lists.as_ref(), vanishing: 1e-4 * lattice.voxel };
-    let (mesh, contour) = contour(&signs, &crossings, lattice, Some(&surface), &contour_settings, run)?;
-    let unseen = unseen::confirm(suspects, &mesh, run)?;
-    times.contour += started.elapsed().as_secs_f64();
-
-    let (voxel, vdb) = (lattice.voxel, VdbStatistics::new(&counts, band.as_ref()));
-    let statistics = OffsetStatistics {
-        distance: r,
-        voxel,
-        times,
-        filter: counts.filter,
-        edges,
-        contour,
-        unseen,
-        halvings: 0,
-        vdb,
     };
+    statistics.unseen = Unseen::new(lost);
+    statistics.slabs = 1;
+    let band = stored.map(StoredBand::finish);
+    statistics.set_memory(band.as_ref());
     Ok(OffsetResult { mesh, band, statistics })
 }

@@ -47,7 +47,7 @@ pub(crate) fn build(
     let (parts, counts) = Parts::collect(distance, settings, Next::Contour, stored, run)?;
     run.install(|| {
         let ring = |nodes: &[Ijk]| Ok::<_, Error>(parts.blocks.contain(nodes));
-        let signs = SignField::new(&parts.origins, &parts.inside, ring)?;
+        let signs = SignField::new(&parts.origins, &parts.inside, settings.slab, ring)?;
         let nodes = NodeTriangles::new(&signs, &parts.origins, parts.closest);
         let lists = CandidateLists::new(settings.lattice, parts.lists);
         Ok(NarrowBand { signs, near: NearTriangles { nodes, lists: Some(lists) }, counts })

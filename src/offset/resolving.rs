@@ -1,25 +1,22 @@
 //! Finer lattices until nothing is unseen.
 
-use super::{EmptyResult, EngineTimes, OffsetResult, OffsetSettings, on_lattice, unsuitable};
+use super::{EmptyResult, EngineTimes, OffsetResult, Prepared};
 use crate::band::BandSettings;
-use crate::distance::SignedDistance;
 use crate::error::Error;
 use crate::lattice::Lattice;
-use crate::run::RunSettings;
 
-/// The offset surface on the lattice of `band_settings`, or on one with half its voxel size, and so on, as often as the
-/// settings allow and memory suffices, until nothing is unseen. Each halving takes four times as long as the round
+/// What `on_lattice` makes on the lattice that was asked for, or on one with half its voxel size, and so on, as often as
+/// the settings allow and memory suffices, until nothing is unseen. Each halving takes four times as long as the round
 /// before: the lattice follows the surface.
 pub(super) fn until_seen(
-    distance: &SignedDistance,
-    settings: &OffsetSettings,
-    mut band_settings: BandSettings,
-    mut times: EngineTimes,
-    run: &RunSettings,
+    prepared: &Prepared<'_>,
+    fits: impl Fn(&BandSettings) -> bool,
+    mut on_lattice: impl FnMut(&BandSettings, EngineTimes) -> Result<OffsetResult, Error>,
 ) -> Result<OffsetResult, Error> {
+    let Prepared { mut band_settings, mut times, settings, .. } = *prepared;
     for halvings in 0.. {
-        let result = on_lattice(distance, settings, &band_settings, times, run);
-        let finer = finer(distance, settings, &band_settings).filter(|_| halvings < settings.resolve);
+        let result = on_lattice(&band_settings, times);
+        let finer = finer(prepared, &band_settings).filter(|f| halvings < settings.resolve && fits(f));
         match (result, finer) {
             (Ok(result), Some(finer)) if result.statistics.unseen.count() > 0 => {
                 times = result.statistics.times;
@@ -37,15 +34,10 @@ pub(super) fn until_seen(
     unreachable!("the settings limit the halvings")
 }
 
-/// The lattice with half the voxel size, if its indices and its band fit.
-fn finer(
-    distance: &SignedDistance,
-    settings: &OffsetSettings,
-    band_settings: &BandSettings,
-) -> Option<BandSettings> {
+/// The lattice with half the voxel size, if its indices fit.
+fn finer(prepared: &Prepared<'_>, band_settings: &BandSettings) -> Option<BandSettings> {
     let lattice = Lattice { voxel: 0.5 * band_settings.lattice.voxel };
     let finer = BandSettings { lattice, ..*band_settings };
-    settings.check_range(distance.mesh(), &finer).ok()?;
-    unsuitable::check_memory(distance.mesh(), &finer, settings.max_memory).ok()?;
+    prepared.settings.check_range(prepared.distance.mesh(), &finer).ok()?;
     Some(finer)
 }

@@ -1,6 +1,7 @@
 //! What happened during an offset: the parts of the statistics file that the engine knows.
 
 use super::narrow_band::BandCounts;
+use crate::band::BandSettings;
 use crate::contour::ContourStatistics;
 use crate::edge::EdgeStatistics;
 use crate::filter::FilterStatistics;
@@ -25,10 +26,35 @@ pub struct OffsetStatistics {
     pub contour: ContourStatistics,
     /// What the lattice could not see.
     pub unseen: Unseen,
+    /// Slabs that were worked off one after the other.
+    pub slabs: usize,
     /// How often the voxel size was halved to see more.
     pub halvings: u32,
     /// The band's size.
     pub vdb: VdbStatistics,
+}
+
+impl OffsetStatistics {
+    /// Of a lattice on which nothing happened yet. `times` is what was spent before.
+    pub(super) fn new(settings: &BandSettings, times: EngineTimes) -> OffsetStatistics {
+        OffsetStatistics { distance: settings.r, voxel: settings.lattice.voxel, times, ..Default::default() }
+    }
+
+    /// Adds what a slab owns of the band.
+    pub(super) fn add_band(&mut self, counts: &BandCounts) {
+        // The nodes are those of the whole grid, in every slab.
+        let nodes_total = counts.filter.nodes_total;
+        self.filter += FilterStatistics { nodes_total: 0, ..counts.filter };
+        self.filter.nodes_total = nodes_total;
+        self.vdb.active_voxels += counts.active_voxels;
+        self.vdb.leaves += counts.leaves;
+    }
+
+    /// The memory of the band, where it is kept.
+    pub(super) fn set_memory(&mut self, band: Option<&Band>) {
+        let memory = |band: &Band| band.surface.memory() + band.closest.as_ref().map_or(0, |g| g.memory());
+        self.vdb.memory = band.map_or(0, memory);
+    }
 }
 
 /// Seconds per stage of the engine.
@@ -60,12 +86,4 @@ pub struct VdbStatistics {
     pub leaves: u64,
     /// Bytes in memory, both grids; 0 where the band is not kept.
     pub memory: u64,
-}
-
-impl VdbStatistics {
-    pub(super) fn new(counts: &BandCounts, band: Option<&Band>) -> Self {
-        let memory = |band: &Band| band.surface.memory() + band.closest.as_ref().map_or(0, |g| g.memory());
-        let BandCounts { active_voxels, leaves, .. } = *counts;
-        VdbStatistics { active_voxels, leaves, memory: band.map_or(0, memory) }
-    }
 }

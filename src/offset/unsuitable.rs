@@ -76,6 +76,37 @@ pub struct MemoryError {
     pub smallest_voxel: f64,
 }
 
+impl MemoryError {
+    /// Not even the thinnest slabs fit.
+    pub(super) fn of_slabs(
+        mesh: &TriMesh,
+        settings: &BandSettings,
+        leaves: u64,
+        allowed: u64,
+    ) -> MemoryError {
+        let voxel = settings.lattice.voxel;
+        let needed = input_bytes(mesh) + leaves * BYTES_PER_LEAF;
+        // The leaves of a layer and its halo lie along curves: they double when the voxel size is halved.
+        let room = allowed.saturating_sub(input_bytes(mesh)).max(allowed / 10);
+        let smallest_voxel = voxel * (leaves * BYTES_PER_LEAF) as f64 / room as f64;
+        MemoryError { voxel, needed, allowed, smallest_voxel }
+    }
+}
+
+/// Peak memory per leaf of the band without what the input takes, in bytes: signs, closest triangles, lists, crossings,
+/// cells and mesh. Measured on several models at 512 to 2048 voxels, and rounded up.
+const BYTES_PER_LEAF: u64 = 20_000;
+
+/// The leaves whose work fits into this many bytes beside the input.
+pub(super) fn leaves_within(mesh: &TriMesh, bytes: u64) -> u64 {
+    bytes.saturating_sub(input_bytes(mesh)) / BYTES_PER_LEAF
+}
+
+/// What the input takes, in bytes.
+fn input_bytes(mesh: &TriMesh) -> u64 {
+    (mesh.triangles.len() as f64 * BYTES_PER_TRIANGLE) as u64
+}
+
 fn bytes(n: u64) -> String {
     match n {
         0..10_000_000 => format!("{:.1} MB", n as f64 / 1e6),
@@ -104,7 +135,7 @@ pub(super) fn check_memory(
     let area = offset_area(mesh, settings.r);
     let voxel = settings.lattice.voxel;
     let per_cell = BYTES_PER_CELL + (settings.half_width - 1.0) * BYTES_PER_CELL_AND_VOXEL;
-    let fixed = mesh.triangles.len() as f64 * BYTES_PER_TRIANGLE;
+    let fixed = input_bytes(mesh) as f64;
     let needed = fixed + area / (voxel * voxel) * per_cell;
     if needed <= allowed as f64 {
         return Ok(());

@@ -6,6 +6,7 @@ use super::report::{Cell, Report};
 use crate::distance::SignedDistance;
 use crate::edge::{EdgeSettings, EdgeStatistics, RootMethod, solve_by};
 use crate::error::Error;
+use crate::slab::Slab;
 use std::time::Instant;
 
 /// Published percentages: S_d = 0, 1, 2, up to 6; bisection up to 6.
@@ -122,7 +123,8 @@ fn here(
         return Ok(row);
     };
     let solve = |method| -> Result<(EdgeStatistics, f64), Error> {
-        let settings = EdgeSettings { lattice: field.settings.lattice, r: field.settings.r, method };
+        let settings =
+            EdgeSettings { lattice: field.settings.lattice, r: field.settings.r, method, slab: Slab::WHOLE };
         let numbers = field.numbers.clone();
         let started = Instant::now();
         let (_, statistics) = solve_by(distance, &settings, &field.signs, numbers, &field.near, lab.run)?;

@@ -1,6 +1,5 @@
 //! Which suspects the finished mesh knows: tips of creases beyond the cells that see them are recovered afterwards.
 
-use super::places::Unseen;
 use super::suspects::{Hidden, Suspect, Suspects};
 use crate::candidates::LeafIndex;
 use crate::geom::triangle::Triangle;
@@ -19,19 +18,19 @@ const REACH: f64 = 2.0;
 /// Triangles looked at between two looks at the run.
 const CHUNK: usize = 1 << 14;
 
-/// Keeps the suspects that `mesh`, the result, has on the wrong side, and gathers them to places.
+/// Keeps the suspects that `mesh`, the result or the part of it around them, has on the wrong side.
 ///
 /// # Errors
 /// When the run is cancelled.
-pub fn confirm(suspects: Suspects, mesh: &TriMesh, run: &RunSettings) -> Result<Unseen, Cancelled> {
-    let Suspects { all, lattice: Some(lattice) } = suspects else { return Ok(Unseen::default()) };
+pub fn lost(suspects: Suspects, mesh: &TriMesh, run: &RunSettings) -> Result<Suspects, Cancelled> {
+    let Suspects { all, lattice: Some(lattice) } = suspects else { return Ok(suspects) };
     if all.is_empty() {
-        return Ok(Unseen::default());
+        return Ok(Suspects { all, lattice: Some(lattice) });
     }
     let near = NearMesh::new(&all, lattice);
     let seen = run.install(|| near.look(mesh, run))?;
     let lost = all.iter().zip(seen).filter(|(suspect, nearest)| nearest.is_lost(suspect, lattice));
-    Ok(Unseen::new(lost.map(|(suspect, _)| *suspect).collect()))
+    Ok(Suspects { all: lost.map(|(suspect, _)| *suspect).collect(), lattice: Some(lattice) })
 }
 
 /// The nearest triangle of the mesh to a suspect.

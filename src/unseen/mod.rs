@@ -20,6 +20,6 @@ mod suspects;
 #[cfg(test)]
 mod tests;
 
-pub use confirm::confirm;
+pub use confirm::lost;
 pub use places::{Place, Unseen, UnseenKind};
 pub use suspects::{Suspects, suspects};

@@ -1,6 +1,6 @@
 //! Places: what is hidden, gathered from neighbouring cells.
 
-use super::suspects::{Found, Hidden, Suspect};
+use super::suspects::{Found, Hidden, Suspect, Suspects};
 use crate::lattice::Ijk;
 use serde::Serialize;
 
@@ -53,7 +53,9 @@ impl Unseen {
         self.sheets + self.gaps + self.parts
     }
 
-    pub(super) fn new(mut lost: Vec<Suspect>) -> Unseen {
+    /// The places of what is lost.
+    pub fn new(lost: Suspects) -> Unseen {
+        let mut lost = lost.all;
         lost.sort_by_key(|s| (s.hidden, s.cell, s.found));
         let groups = Groups::of(&lost);
         let mut places: Vec<Place> = groups.into_iter().map(|group| Place::of(&lost, &group)).collect();

@@ -7,6 +7,7 @@ use crate::distance::{Sample, SignedDistance};
 use crate::edge::NearTriangles;
 use crate::lattice::{Axis, Ijk, LEAF_DIM, LEAF_SIZE, Lattice};
 use crate::run::{Cancelled, RunSettings};
+use crate::slab::Slab;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -46,6 +47,14 @@ pub struct Suspects {
     pub(super) lattice: Option<Lattice>,
 }
 
+impl Suspects {
+    /// Adds those of the next slab.
+    pub fn append(&mut self, mut other: Suspects) {
+        self.all.append(&mut other.all);
+        self.lattice = self.lattice.or(other.lattice);
+    }
+}
+
 /// Questions along one edge: a gap between plane walls takes one, round ones two or three.
 const ALONG_EDGE: usize = 6;
 
@@ -59,6 +68,7 @@ const KNOWN: usize = 4;
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// Looks for points between the nodes of `signs` that have the other sign. `near` has the closest triangles of the nodes.
+/// What belongs to other slabs is left to them.
 ///
 /// # Errors
 /// When the run is cancelled.
@@ -66,13 +76,14 @@ pub fn suspects(
     distance: &SignedDistance,
     r: f64,
     lattice: Lattice,
+    slab: Slab,
     signs: &SignField,
     near: &NearTriangles,
     run: &RunSettings,
 ) -> Result<Suspects, Cancelled> {
     let directions = DirectionTable::new(distance.ssvh(), distance.mesh().triangles.len());
     let search = Search { distance, r, lattice, signs, near, directions };
-    let leaves: Vec<LeafId> = signs.leaves().collect();
+    let leaves: Vec<LeafId> = signs.leaves().filter(|&leaf| slab.owns(signs.origin(leaf))).collect();
     let all: Vec<Vec<Suspect>> = run.install(|| {
         leaves
             .par_iter()

@@ -5,6 +5,7 @@ use crate::contour::{ContourSettings, ContourStatistics, CutMethod, Lattice, Pre
 use crate::edge::{Crossing, Crossings, EdgeNumbers};
 use crate::mesh::TriMesh;
 use crate::run::RunSettings;
+use crate::slab::Slab;
 use std::convert::Infallible;
 
 /// A field whose nodes from `low` to `high` are inside by a rule, and whose other nodes are outside.
@@ -30,7 +31,8 @@ pub fn signs(low: Ijk, high: Ijk, inside: impl Fn(Ijk) -> bool) -> SignField {
             mask
         })
         .collect();
-    SignField::new(&origins, &masks, |ring| Ok::<_, Infallible>(vec![false; ring.len()])).unwrap()
+    SignField::new(&origins, &masks, Slab::WHOLE, |ring| Ok::<_, Infallible>(vec![false; ring.len()]))
+        .unwrap()
 }
 
 /// Crossings of all sign changes by a rule of the edge's lower node and axis.

@@ -1,0 +1,64 @@
+//! The stages on one slab of the lattice, or on all of it.
+
+use super::narrow_band::{self, NarrowBand};
+use super::stored_band::StoredBand;
+use super::surface::OffsetSurface;
+use super::{OffsetSettings, OffsetStatistics};
+use crate::band::{BandSettings, grid_nodes};
+use crate::contour::{ContourSettings, SlabContour, contour_slab};
+use crate::distance::SignedDistance;
+use crate::edge::{EdgeNumbers, EdgeSettings, NearTriangles, RootMethod, solve_by};
+use crate::error::Error;
+use crate::geom::aabb::Aabb;
+use crate::run::RunSettings;
+use crate::unseen::{self, Suspects};
+use glam::DVec3;
+use std::time::Instant;
+
+/// The contour of a slab, and what it lacks; `None` when the surface passes nowhere near the slab. What the slab owns
+/// is added to `stored` and to the statistics.
+pub(super) fn on_slab(
+    distance: &SignedDistance,
+    settings: &OffsetSettings,
+    band_settings: &BandSettings,
+    stored: Option<&mut StoredBand>,
+    statistics: &mut OffsetStatistics,
+    run: &RunSettings,
+) -> Result<Option<(SlabContour, Suspects)>, Error> {
+    let BandSettings { lattice, r, slab, .. } = *band_settings;
+    let started = Instant::now();
+    let NarrowBand { signs, near, counts } = narrow_band::build(distance, band_settings, stored, run)?;
+    statistics.add_band(&counts);
+    statistics.times.band += started.elapsed().as_secs_f64();
+
+    let started = Instant::now();
+    let numbers = run.install(|| EdgeNumbers::new(&signs))?;
+    if numbers.is_empty() {
+        return Ok(None);
+    }
+    let edge_settings = EdgeSettings { lattice, r, method: RootMethod::Following, slab };
+    let (crossings, edges) = solve_by(distance, &edge_settings, &signs, numbers, &near, run)?;
+    statistics.edges += edges;
+    let suspects = unseen::suspects(distance, r, lattice, slab, &signs, &near, run)?;
+    let NearTriangles { lists, .. } = near;
+    statistics.times.edges += started.elapsed().as_secs_f64();
+
+    let started = Instant::now();
+    let contour_settings =
+        ContourSettings { slab, reach: Some(reach(distance, band_settings)), ..settings.contour(lattice) };
+    let surface = OffsetSurface { distance, r, lists: lists.as_ref(), vanishing: 1e-4 * lattice.voxel };
+    let contour = contour_slab(&signs, &crossings, lattice, Some(&surface), &contour_settings, run)?;
+    drop((signs, crossings));
+    let lost = unseen::lost(suspects, &contour.mesh, run)?;
+    statistics.contour += contour.statistics;
+    statistics.times.contour += started.elapsed().as_secs_f64();
+    Ok(Some((contour, lost)))
+}
+
+/// The largest index, in size, of a node that the contour can reach, wherever its slab is: how coordinates are rounded
+/// must not depend on the slab.
+fn reach(distance: &SignedDistance, settings: &BandSettings) -> u32 {
+    let bounds = Aabb::around(distance.mesh().vertices.iter().map(|&v| DVec3::from(v)));
+    let ends = grid_nodes(bounds, settings);
+    ends.iter().flat_map(|end| end.0).map(i32::unsigned_abs).max().unwrap_or(0)
+}

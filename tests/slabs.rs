@@ -1,0 +1,138 @@
+//! Slabs against the whole: the same mesh, the same band, the same counts.
+
+use exocarp::contour::SlabContour;
+use exocarp::error::Error;
+use exocarp::lattice::LEAF_SIZE;
+use exocarp::mesh::{TriMesh, shapes};
+use exocarp::offset::{
+    Cut, Length, OffsetResult, OffsetSettings, PieceSink, Precision, Tolerance, VoxelSize, offset,
+    offset_in_slabs,
+};
+use exocarp::run::RunSettings;
+use exocarp::vdb::Band;
+
+fn run() -> RunSettings {
+    RunSettings::with_threads(2).unwrap()
+}
+
+/// Puts the pieces together.
+#[derive(Default)]
+struct Gathered(TriMesh);
+
+impl PieceSink for Gathered {
+    fn restart(&mut self) -> Result<(), Error> {
+        self.0 = TriMesh::default();
+        Ok(())
+    }
+
+    fn piece(&mut self, piece: &SlabContour) -> Result<(), Error> {
+        let first = self.0.vertices.len() as i64 - piece.vertices.start as i64;
+        self.0.vertices.extend_from_slice(&piece.mesh.vertices[piece.vertices.clone()]);
+        let number = |v: u32| u32::try_from(first + i64::from(v)).unwrap();
+        self.0.triangles.extend(piece.mesh.triangles[piece.triangles.clone()].iter().map(|t| t.map(number)));
+        Ok(())
+    }
+}
+
+fn settings(distance: f64, voxel: f64) -> OffsetSettings {
+    OffsetSettings {
+        distance: Length::Units(distance),
+        voxel: VoxelSize::Units(voxel),
+        precision: Precision::F64,
+        ..OffsetSettings::default()
+    }
+}
+
+fn rotated(mut mesh: TriMesh) -> TriMesh {
+    let rotation = glam::DQuat::from_axis_angle(glam::DVec3::new(1.0, -2.0, 0.5).normalize(), 0.9);
+    for v in &mut mesh.vertices {
+        *v = (rotation * glam::DVec3::from(*v)).to_array();
+    }
+    mesh
+}
+
+/// Six times as long along x.
+fn stretched(mut mesh: TriMesh) -> TriMesh {
+    for v in &mut mesh.vertices {
+        v[0] *= 6.0;
+    }
+    mesh
+}
+
+/// Origins, values and active masks, and the inside in between.
+fn content(band: &Band) -> (Vec<exocarp::lattice::Ijk>, Vec<u32>, Vec<[u64; 8]>, Vec<bool>) {
+    let origins = band.surface.leaf_origins();
+    let mut values = vec![0.0; origins.len() * LEAF_SIZE];
+    let mut active = vec![[0; 8]; origins.len()];
+    band.surface.read_leaves(0, &mut values, &mut active).unwrap();
+    let grid: Vec<_> = (0..40 * 40 * 40)
+        .map(|n| exocarp::lattice::Ijk::new(8 * (n / 1600 - 20), 8 * (n / 40 % 40 - 20), 8 * (n % 40 - 20)))
+        .collect();
+    (origins, values.into_iter().map(f32::to_bits).collect(), active, band.surface.inside_at(&grid))
+}
+
+fn assert_same(slabs: &OffsetResult, whole: &OffsetResult, what: &str) {
+    let (s, w) = (&slabs.statistics, &whole.statistics);
+    assert_eq!((s.filter, s.edges, s.contour), (w.filter, w.edges, w.contour), "{what}");
+    assert_eq!(s.unseen, w.unseen, "{what}");
+    assert_eq!((s.vdb.leaves, s.vdb.active_voxels), (w.vdb.leaves, w.vdb.active_voxels), "{what}");
+    let (s, w) = (slabs.band.as_ref().map(content), whole.band.as_ref().map(content));
+    assert!(s == w, "{what}: the bands differ");
+}
+
+#[test]
+fn slabs_one_after_the_other_give_the_whole() {
+    for (name, mesh) in [
+        ("flower", stretched(rotated(shapes::flower(8)))),
+        ("carved_cube", stretched(rotated(shapes::carved_cube(6)))),
+        ("box", stretched(shapes::cube(1))),
+    ] {
+        for distance in [0.1, -0.06] {
+            for tolerance in [None, (name == "carved_cube").then_some(Tolerance::Voxels(0.02))] {
+                let settings = OffsetSettings {
+                    tolerance,
+                    keep_band: true,
+                    half_width: 3.0,
+                    // So many layers that a halo is not all of them.
+                    ..settings(distance, if tolerance.is_some() { 0.02 } else { 0.035 })
+                };
+                let what = format!("{name} {distance} {tolerance:?}");
+                let whole = offset(&mesh, &settings, &run()).unwrap();
+                let mut pieces = Gathered::default();
+                let memory =
+                    20_000 * whole.statistics.vdb.leaves * if tolerance.is_some() { 39 } else { 34 } / 40;
+                let slabs =
+                    offset_in_slabs(&mesh, &settings, Cut::Memory(memory), &mut pieces, &run()).unwrap();
+                assert!(slabs.statistics.slabs > 1, "{what}: {}", slabs.statistics.slabs);
+                assert!(pieces.0 == whole.mesh, "{what}: the meshes differ");
+                assert_same(&slabs, &whole, &what);
+            }
+        }
+    }
+}
+
+#[test]
+fn tiles_one_after_the_other_give_the_whole() {
+    let mesh = rotated(shapes::anchor(6));
+    let settings = settings(0.05, 0.012);
+    let whole = offset(&mesh, &settings, &run()).unwrap();
+    for of in [2, 5, 40] {
+        let mut all = TriMesh::default();
+        for number in 1..=of {
+            let mut piece = Gathered(std::mem::take(&mut all));
+            struct Continued<'a>(&'a mut Gathered);
+            impl PieceSink for Continued<'_> {
+                fn restart(&mut self) -> Result<(), Error> {
+                    Ok(())
+                }
+                fn piece(&mut self, piece: &SlabContour) -> Result<(), Error> {
+                    self.0.piece(piece)
+                }
+            }
+            let cut = Cut::Tile { number, of };
+            offset_in_slabs(&mesh, &settings, cut, &mut Continued(&mut piece), &run()).unwrap();
+            all = piece.0;
+        }
+        assert!(all == whole.mesh, "{of} tiles: the meshes differ");
+    }
+}
