@@ -1,6 +1,6 @@
 //! The arguments, their units and their help.
 
-use super::numbers::{bytes, length, resolution, tolerance, voxel};
+use super::numbers::{bytes, length, resolution, tile, tolerance, voxel};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use exocarp::compare::Method;
 use exocarp::offset::{Length, SignMode, Tolerance};
@@ -26,9 +26,18 @@ Examples:
   exocarp offset part.stl -d 1% -o a.ply --vdb a.vdb --stats a.json
   exocarp offset part.stl -d 1% --tolerance 0.02h -o a.ply     within 0.02 voxels of the true offset
   exocarp offset scan.ply -d 1% --sign pseudonormal -o a.ply   an input with holes
+  exocarp offset part.stl -d 1% --vdb a.vdb                    the narrow band only
+  exocarp offset part.stl -d 1% --resolution 4096 --stream --max-memory 4G -o huge.ply
 
 Lengths are in model units (those of the input file); percentages are of the diagonal of the input's
 bounding box. Formats by extension, in and out: .obj .ply .stl .off";
+
+const MERGE_EXAMPLES: &str = "\
+Examples:
+  for i in 1 2 3 4; do exocarp offset big.stl -d 1% --resolution 4096 --tile $i/4 -o tile$i.ply; done
+  exocarp merge tile*.ply -o grown.ply                     the very file of an undivided run
+
+Each tile can be made on a machine of its own; all need the same input and settings.";
 
 const COMPARE_EXAMPLES: &str = "\
 Examples:
@@ -107,6 +116,8 @@ pub(super) struct Common {
 pub(super) enum Command {
     /// Offset a mesh: the closed surface at a signed distance from it
     Offset(OffsetArguments),
+    /// Join the tiles of an offset, made with --tile, to the whole
+    Merge(MergeArguments),
     /// Make the same offset with OpenVDB and MeshLib, and compare times, memory and errors
     Compare(CompareArguments),
     /// One run of one method, for `compare`
@@ -138,9 +149,9 @@ pub(super) struct OffsetArguments {
     /// negative shrinks, 0 remeshes
     #[arg(long, short, value_name = "D", value_parser = length, allow_hyphen_values = true)]
     pub distance: Length,
-    /// Where to write the offset surface
-    #[arg(long, short, value_name = "OUTPUT")]
-    pub output: PathBuf,
+    /// Where to write the offset surface; may be left out with --vdb
+    #[arg(long, short, value_name = "OUTPUT", required_unless_present = "vdb")]
+    pub output: Option<PathBuf>,
     /// Voxel size in model units
     #[arg(long, value_name = "H", value_parser = voxel, allow_negative_numbers = true)]
     #[arg(conflicts_with = "resolution")]
@@ -158,6 +169,13 @@ pub(super) struct OffsetArguments {
     #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, default_value_t = 0, default_missing_value = "3")]
     #[arg(value_parser = clap::value_parser!(u32).range(0..=10), hide_default_value = true)]
     pub resolve: u32,
+    /// Work slab by slab and write triangles as they come (PLY, STL), within --max-memory [default there: 1G]; on by
+    /// itself when the whole would not fit
+    #[arg(long, conflicts_with = "tile")]
+    pub stream: bool,
+    /// Make tile I of N only, for `exocarp merge` to join: several machines share one offset
+    #[arg(long, value_name = "I/N", value_parser = tile, conflicts_with = "resolve")]
+    pub tile: Option<TileNumber>,
     /// Write PLY with 64-bit coordinates
     #[arg(long)]
     pub f64: bool,
@@ -176,6 +194,27 @@ pub(super) struct OffsetArguments {
     /// Write settings, times and counts as JSON
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
+}
+
+/// One of several tiles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct TileNumber {
+    /// From 1.
+    pub number: u32,
+    /// How many there are.
+    pub of: u32,
+}
+
+/// `exocarp merge`.
+#[derive(Args, Debug)]
+#[command(after_help = MERGE_EXAMPLES)]
+pub(super) struct MergeArguments {
+    /// All tiles of one offset, in any order
+    #[arg(required = true)]
+    pub tiles: Vec<PathBuf>,
+    /// Where to write the whole, in the tiles' format
+    #[arg(long, short, value_name = "OUTPUT")]
+    pub output: PathBuf,
 }
 
 /// `exocarp compare`.

@@ -7,6 +7,8 @@ mod args;
 mod compare;
 mod exit;
 mod info;
+mod making;
+mod merge;
 mod model;
 mod numbers;
 mod offset;
@@ -60,6 +62,7 @@ fn run(arguments: Arguments, started: Instant) -> Result<(), Failure> {
             Ok(())
         }
         Command::Offset(command) => offset::run(&command, &Session::start(&arguments.common, started)?),
+        Command::Merge(command) => merge::run(&command, &Session::start(&arguments.common, started)?),
         Command::Compare(command) => compare::run(&command, &Session::start(&arguments.common, started)?),
         Command::Worker(command) => {
             compare::run_worker(&command, &Session::start(&arguments.common, started)?)

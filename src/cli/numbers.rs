@@ -1,5 +1,6 @@
 //! Numbers as users write them, and as users read them.
 
+use super::args::TileNumber;
 use exocarp::offset::{Length, Tolerance};
 
 /// A distance in model units, or with `%` of the diagonal.
@@ -36,6 +37,18 @@ pub(super) fn resolution(text: &str) -> Result<u32, String> {
         Ok(0) => Err("a resolution is at least 1".into()),
         Ok(n) => Ok(n),
         Err(_) => Err(format!("a resolution is a whole number from 1 to {}", u32::MAX)),
+    }
+}
+
+/// One of several tiles, as `3/8`.
+pub(super) fn tile(text: &str) -> Result<TileNumber, String> {
+    let wrong = || "a tile is one of several, like 3/8".to_string();
+    let (number, of) = text.split_once('/').ok_or_else(wrong)?;
+    let number = number.trim().parse().map_err(|_| wrong())?;
+    let of = of.trim().parse().map_err(|_| wrong())?;
+    match number {
+        1.. if number <= of => Ok(TileNumber { number, of }),
+        _ => Err(format!("tiles are numbered 1 to {of}")),
     }
 }
 

@@ -1,7 +1,8 @@
 //! `exocarp offset`: load, clean, offset, write.
 
-use super::args::{Codec, OffsetArguments, Sign};
+use super::args::{Codec, OffsetArguments, Sign, TileNumber};
 use super::exit::{Failure, of_io};
+use super::making::{check_pieces, make};
 use super::numbers::{counted, grouped, memory, short};
 use super::outputs;
 use super::resources::peak_rss;
@@ -9,7 +10,7 @@ use super::session::{Session, Verbosity};
 use super::statistics::{MeshFacts, OffsetFile, Phases};
 use exocarp::io::{self, Coordinates, Format, SaveOptions};
 use exocarp::mesh::{CleanReport, Topology, TriMesh, clean};
-use exocarp::offset::{OffsetResult, OffsetSettings, OffsetStatistics, Precision, VoxelSize, offset};
+use exocarp::offset::{OffsetResult, OffsetSettings, OffsetStatistics, Precision, VoxelSize};
 use exocarp::run::Phase;
 use exocarp::vdb::{self, Band, Compression, VdbError, VdbOptions, VdbPrecision};
 use std::path::Path;
@@ -27,7 +28,7 @@ pub(super) fn run(arguments: &OffsetArguments, session: &Session) -> Result<(), 
 
     let (loaded, mut phases) = load_mesh(&arguments.input, session)?;
     warn_of_input(arguments, &loaded, session);
-    let result = offset(&loaded.mesh, &settings, &session.run)?;
+    let (result, written) = make(&loaded.mesh, arguments, &settings, session)?;
     phases.engine = result.statistics.times;
     if result.statistics.edges.sign_jumps > 0 {
         let jumps = counted(result.statistics.edges.sign_jumps as usize, "grid edge", "grid edges");
@@ -43,14 +44,11 @@ pub(super) fn run(arguments: &OffsetArguments, session: &Session) -> Result<(), 
 
     warn_of_unseen(&result.statistics, arguments.resolve, session);
 
-    let (_, write) = session.phase(Phase::Write, || {
-        save_mesh(&result.mesh, &arguments.output, coordinates(arguments.f64), session)?;
-        match (&arguments.vdb, &result.band) {
-            (Some(path), Some(band)) => save_vdb(band, path, arguments, result.statistics.distance, session),
-            _ => Ok(()),
-        }
+    let (_, write) = session.phase(Phase::Write, || match (&arguments.vdb, &result.band) {
+        (Some(path), Some(band)) => save_vdb(band, path, arguments, result.statistics.distance, session),
+        _ => Ok(()),
     })?;
-    phases.write = write;
+    phases.write = written + write;
     if let Some(path) = &arguments.stats {
         save_statistics(path, arguments, &settings, &loaded, &result, &phases, session)?;
     }
@@ -70,7 +68,7 @@ fn settings(arguments: &OffsetArguments, session: &Session) -> Result<OffsetSett
         sign: arguments.sign.mode(),
         half_width: if arguments.vdb.is_some() { STORED_HALF_WIDTH } else { 1.0 },
         keep_band: arguments.vdb.is_some(),
-        precision: precision(&arguments.output, arguments.f64)?,
+        precision: arguments.output.as_ref().map_or(Ok(Precision::F32), |o| precision(o, arguments.f64))?,
         tolerance: arguments.tolerance,
         resolve: arguments.resolve,
         max_memory: session.max_memory,
@@ -88,19 +86,22 @@ fn precision(output: &Path, f64: bool) -> Result<Precision, Failure> {
     })
 }
 
-fn format(output: &Path) -> Result<Format, Failure> {
+pub(super) fn format(output: &Path) -> Result<Format, Failure> {
     Format::of(output).map_err(|e| Failure::usage(format!("{}: {e}", output.display())))
 }
 
 fn check_outputs(arguments: &OffsetArguments) -> Result<(), Failure> {
-    check_mesh_output(&arguments.output, arguments.f64)?;
+    if let Some(output) = &arguments.output {
+        check_mesh_output(output, arguments.f64)?;
+    }
+    check_pieces(arguments)?;
     if let Some(path) = &arguments.vdb
         && !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("vdb"))
     {
         return Err(Failure::usage(format!("{}: --vdb needs a file name that ends in .vdb", path.display())));
     }
-    let others = [&arguments.vdb, &arguments.stats].into_iter().flatten();
-    outputs::check(std::iter::once(&arguments.output).chain(others).map(|p| p.as_path()))
+    let all = [&arguments.output, &arguments.vdb, &arguments.stats];
+    outputs::check(all.into_iter().flatten().map(|p| p.as_path()))
 }
 
 /// Checks that the extension of a mesh output is known and can hold what was asked for.
@@ -239,15 +240,24 @@ fn save_statistics(
 }
 
 fn tell(arguments: &OffsetArguments, result: &OffsetResult, phases: &Phases, session: &Session) {
-    let more = [&arguments.vdb, &arguments.stats].into_iter().flatten();
-    let more: String = more.map(|path| format!("; {}", path.display())).collect();
-    session.tell(&format!(
-        "{}: {}, {}, {:.2} s{more}",
-        arguments.output.display(),
-        counted(result.mesh.triangles.len(), "triangle", "triangles"),
-        counted(result.mesh.vertices.len(), "vertex", "vertices"),
-        session.wall(),
-    ));
+    let s = &result.statistics;
+    let what = match &arguments.output {
+        Some(_) => {
+            let triangles = counted(s.contour.triangles as usize, "triangle", "triangles");
+            let vertices = counted(s.contour.vertices as usize, "vertex", "vertices");
+            let slabs = match (arguments.tile, s.slabs) {
+                (Some(TileNumber { number, of }), _) => format!(" in tile {number} of {of}"),
+                (None, 0 | 1) => String::new(),
+                (None, slabs) => format!(" in {slabs} slabs"),
+            };
+            format!("{triangles}, {vertices}{slabs}")
+        }
+        None => counted(s.vdb.active_voxels as usize, "active voxel", "active voxels"),
+    };
+    let mut files = [&arguments.output, &arguments.vdb, &arguments.stats].into_iter().flatten();
+    let first = files.next().map(|path| path.display().to_string()).unwrap_or_default();
+    let more: String = files.map(|path| format!("; {}", path.display())).collect();
+    session.tell(&format!("{first}: {what}, {:.2} s{more}", session.wall()));
     if session.verbosity == Verbosity::Verbose {
         session.tell(&summary(result, phases));
     }

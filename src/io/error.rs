@@ -215,6 +215,9 @@ pub enum SaveProblem {
         /// The triangle.
         triangle: usize,
     },
+    /// A format that cannot be written piece by piece.
+    #[error("{0} cannot be written piece by piece; write .ply or .stl")]
+    NotInPieces(Format),
     /// More triangles than STL can count.
     #[error("the mesh has more than {} triangles, the limit of STL; write .ply instead", u32::MAX)]
     TooManyTriangles,

@@ -30,15 +30,20 @@ mod off;
 mod ply;
 mod polygon;
 mod stl;
+mod stream;
 #[cfg(test)]
 mod tests;
 mod text;
+mod tile;
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 pub use error::{LoadError, Place, Problem, SaveError, SaveProblem, UnknownFormat};
+
+pub use stream::MeshStream;
+pub use tile::{MergeError, MergeProblem, Tile, is_tile, merge_tiles, save_tile};
 
 use crate::mesh::TriMesh;
 use error::Fault;

@@ -13,9 +13,9 @@ use super::text::Text;
 use crate::mesh::TriMesh;
 
 /// Header and count of a binary file.
-const HEAD: usize = 84;
+pub(super) const HEAD: usize = 84;
 /// A triangle of a binary file: normal and corners as twelve f32, and two bytes of attributes.
-const RECORD: usize = 50;
+pub(super) const RECORD: usize = 50;
 /// How much of a file is looked at to tell text from binary data. A binary file has zero bytes before
 /// this, at the latest in its count; an ascii file has none at all.
 const PROBE: usize = 1024;
@@ -164,14 +164,30 @@ fn expect<R: BufRead>(text: &mut Text<R>, keyword: &str) -> Result<(), Fault> {
 
 /// Writes a mesh, binary. Coordinates are rounded to f32.
 pub(super) fn write(mesh: &TriMesh, writer: &mut impl Write) -> std::io::Result<()> {
-    // Must not begin with "solid".
+    writer.write_all(&head(mesh.triangles.len() as u32))?;
+    write_triangles((0..mesh.triangles.len()).map(|t| mesh.corners(t)), writer)
+}
+
+/// Header and count of a file that is written here.
+pub(super) fn head(triangles: u32) -> [u8; HEAD] {
+    titled_head(concat!("binary STL written by exocarp ", env!("CARGO_PKG_VERSION")), triangles)
+}
+
+/// The same with another title, of which 80 bytes are kept. It must not begin with "solid".
+pub(super) fn titled_head(title: &str, triangles: u32) -> [u8; HEAD] {
     let mut head = [b' '; HEAD];
-    let title = concat!("binary STL written by exocarp ", env!("CARGO_PKG_VERSION"));
-    head[..title.len()].copy_from_slice(title.as_bytes());
-    head[80..].copy_from_slice(&(mesh.triangles.len() as u32).to_le_bytes());
-    writer.write_all(&head)?;
-    for t in 0..mesh.triangles.len() {
-        let corners = mesh.corners(t);
+    let length = title.len().min(80);
+    head[..length].copy_from_slice(&title.as_bytes()[..length]);
+    head[80..].copy_from_slice(&triangles.to_le_bytes());
+    head
+}
+
+/// Writes the triangles of a binary file.
+pub(super) fn write_triangles(
+    triangles: impl IntoIterator<Item = [[f64; 3]; 3]>,
+    writer: &mut impl Write,
+) -> std::io::Result<()> {
+    for corners in triangles {
         let mut record = [0; RECORD];
         let numbers = [unit_normal(corners)].into_iter().chain(corners).flatten();
         for (place, x) in record.chunks_exact_mut(4).zip(numbers) {

@@ -26,7 +26,7 @@ pub use crate::contour::Precision;
 pub use in_slabs::{Cut, PieceSink, offset_in_slabs};
 pub use settings::{Length, OffsetSettings, SettingsError, SignMode, Tolerance, VoxelSize};
 pub use statistics::{EngineTimes, OffsetStatistics, VdbStatistics};
-pub use unsuitable::{EmptyResult, InputError, MemoryError};
+pub use unsuitable::{EmptyResult, InputError, MemoryError, available_memory};
 
 use crate::band::BandSettings;
 use crate::contour::SlabContour;
@@ -73,6 +73,14 @@ pub fn offset(mesh: &TriMesh, settings: &OffsetSettings, run: &RunSettings) -> R
             on_lattice(prepared.distance, settings, band_settings, times, run)
         })
     })
+}
+
+/// Checks, before any work, that all of an offset fits into the memory that the settings allow.
+///
+/// # Errors
+/// [`Error::Memory`] when it does not; [`Error::Settings`].
+pub fn check_memory(mesh: &TriMesh, settings: &OffsetSettings) -> Result<(), Error> {
+    Ok(unsuitable::check_memory(mesh, &settings.resolve(mesh)?, settings.max_memory)?)
 }
 
 /// The narrow band of an offset, in OpenVDB grids, and no mesh: no edge is intersected.

@@ -158,7 +158,7 @@ fn offset_area(mesh: &TriMesh, r: f64) -> f64 {
 }
 
 /// Memory that the system can give without swapping, in bytes, where it says so.
-fn available_memory() -> Option<u64> {
+pub fn available_memory() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
     let line = text.lines().find(|line| line.starts_with("MemAvailable:"))?;
     line.split_whitespace().nth(1)?.parse::<u64>().ok().map(|kib| kib * 1024)

@@ -116,30 +116,63 @@ pub(super) fn write(
     coordinates: Coordinates,
     writer: &mut impl Write,
 ) -> std::io::Result<()> {
+    let (vertices, triangles) = (mesh.vertices.len() as u64, mesh.triangles.len() as u64);
+    writer.write_all(&header(vertices, triangles, coordinates, &[]))?;
+    write_vertices(&mesh.vertices, coordinates, writer)?;
+    write_faces(mesh.triangles.iter().copied(), writer)
+}
+
+/// The header of a file that is written here, with further comments.
+pub(super) fn header(
+    vertices: u64,
+    triangles: u64,
+    coordinates: Coordinates,
+    comments: &[String],
+) -> Vec<u8> {
     // `int` is what most readers expect; it cannot name the upper half of all vertices.
-    let index = if mesh.vertices.len() <= i32::MAX as usize { "int" } else { "uint" };
+    let index = if vertices <= i32::MAX as u64 { "int" } else { "uint" };
     let number = match coordinates {
         Coordinates::F32 => "float",
         Coordinates::F64 => "double",
     };
-    write!(writer, "ply\nformat binary_little_endian 1.0\n")?;
-    writeln!(writer, "comment written by exocarp {}", env!("CARGO_PKG_VERSION"))?;
-    writeln!(writer, "element vertex {}", mesh.vertices.len())?;
-    for name in ["x", "y", "z"] {
-        writeln!(writer, "property {number} {name}")?;
+    let version = env!("CARGO_PKG_VERSION");
+    let mut text = format!("ply\nformat binary_little_endian 1.0\ncomment written by exocarp {version}\n");
+    for comment in comments {
+        text += &format!("comment {comment}\n");
     }
-    writeln!(writer, "element face {}", mesh.triangles.len())?;
-    write!(writer, "property list uchar {index} vertex_indices\nend_header\n")?;
-    for vertex in &mesh.vertices {
-        for &x in vertex {
-            match coordinates {
-                Coordinates::F32 => writer.write_all(&(x as f32).to_le_bytes())?,
-                Coordinates::F64 => writer.write_all(&x.to_le_bytes())?,
-            }
+    text += &format!("element vertex {vertices}\n");
+    for name in ["x", "y", "z"] {
+        text += &format!("property {number} {name}\n");
+    }
+    text += &format!("element face {triangles}\nproperty list uchar {index} vertex_indices\nend_header\n");
+    text.into_bytes()
+}
+
+/// Writes the vertices of a file with such a header.
+pub(super) fn write_vertices(
+    vertices: &[[f64; 3]],
+    coordinates: Coordinates,
+    writer: &mut impl Write,
+) -> std::io::Result<()> {
+    for &x in vertices.as_flattened() {
+        match coordinates {
+            Coordinates::F32 => writer.write_all(&(x as f32).to_le_bytes())?,
+            Coordinates::F64 => writer.write_all(&x.to_le_bytes())?,
         }
     }
-    for triangle in &mesh.triangles {
-        let mut record = [3; 13];
+    Ok(())
+}
+
+/// Bytes of a face.
+pub(super) const FACE: usize = 13;
+
+/// Writes the faces of a file with such a header.
+pub(super) fn write_faces(
+    triangles: impl IntoIterator<Item = [u32; 3]>,
+    writer: &mut impl Write,
+) -> std::io::Result<()> {
+    for triangle in triangles {
+        let mut record = [3; FACE];
         for (place, v) in record[1..].chunks_exact_mut(4).zip(triangle) {
             place.copy_from_slice(&v.to_le_bytes());
         }

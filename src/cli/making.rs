@@ -1,0 +1,188 @@
+//! The ways to make an offset: as a whole, slab by slab, one tile of it, or its band only.
+
+use super::args::{OffsetArguments, TileNumber};
+use super::exit::Failure;
+use super::offset::{coordinates, format, save_mesh};
+use super::session::Session;
+use exocarp::contour::SlabContour;
+use exocarp::error::Error;
+use exocarp::io::{Format, MeshStream, SaveError, Tile, save_tile};
+use exocarp::mesh::TriMesh;
+use exocarp::offset::{
+    Cut, OffsetResult, OffsetSettings, PieceSink, available_memory, check_memory, offset, offset_band,
+    offset_in_slabs,
+};
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Memory of a streamed run where no limit is given: 1 GiB.
+const STREAM_MEMORY: u64 = 1 << 30;
+
+/// A way to make an offset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Way {
+    /// The band, no mesh.
+    Band,
+    /// All at once.
+    Whole,
+    /// Slab by slab, within so many bytes.
+    Slabs(u64),
+    /// One tile.
+    Tile(TileNumber),
+}
+
+/// Makes the offset and stages its mesh. Returns with it the seconds that writing took.
+pub(super) fn make(
+    mesh: &TriMesh,
+    arguments: &OffsetArguments,
+    settings: &OffsetSettings,
+    session: &Session,
+) -> Result<(OffsetResult, f64), Failure> {
+    let run = &session.run;
+    let Some(output) = &arguments.output else {
+        return Ok((offset_band(mesh, settings, run)?, 0.0));
+    };
+    match way(mesh, arguments, settings, session)? {
+        Way::Band => Ok((offset_band(mesh, settings, run)?, 0.0)),
+        Way::Whole => {
+            let result = offset(mesh, settings, run)?;
+            let started = Instant::now();
+            save_mesh(&result.mesh, output, coordinates(arguments.f64), session)?;
+            Ok((result, started.elapsed().as_secs_f64()))
+        }
+        Way::Slabs(memory) => {
+            let staged = session.staging.stage(output)?;
+            let named = |error| of_output(error, output);
+            let stream = MeshStream::create(&staged, coordinates(arguments.f64)).map_err(named)?;
+            let mut sink = Streamed { stream, seconds: 0.0 };
+            let result =
+                offset_in_slabs(mesh, settings, Cut::Memory(memory), &mut sink, run).map_err(|error| {
+                    match error {
+                        Error::Save(error) => of_output(error, output),
+                        other => other.into(),
+                    }
+                })?;
+            let started = Instant::now();
+            sink.stream.finish().map_err(named)?;
+            Ok((result, sink.seconds + started.elapsed().as_secs_f64()))
+        }
+        Way::Tile(TileNumber { number, of }) => {
+            let staged = session.staging.stage(output)?;
+            let tile = Tile { number, of, job: job(mesh, settings) };
+            let mut sink = Tiled { staged, tile, f64: arguments.f64, seconds: 0.0 };
+            let result = offset_in_slabs(mesh, settings, Cut::Tile { number, of }, &mut sink, run);
+            let result = result.map_err(|error| match error {
+                Error::Save(error) => of_output(error, output),
+                other => other.into(),
+            })?;
+            Ok((result, sink.seconds))
+        }
+    }
+}
+
+fn way(
+    mesh: &TriMesh,
+    arguments: &OffsetArguments,
+    settings: &OffsetSettings,
+    session: &Session,
+) -> Result<Way, Failure> {
+    let Some(output) = &arguments.output else { return Ok(Way::Band) };
+    let in_pieces = matches!(format(output)?, Format::Ply | Format::Stl);
+    let limit = session.max_memory;
+    Ok(match (arguments.tile, arguments.stream) {
+        (Some(tile), _) => Way::Tile(tile),
+        (None, true) => Way::Slabs(limit.unwrap_or(STREAM_MEMORY)),
+        (None, false)
+            if in_pieces && check_memory(mesh, settings).is_err_and(|e| matches!(e, Error::Memory(_))) =>
+        {
+            match limit.or_else(available_memory) {
+                Some(memory) => Way::Slabs(memory),
+                None => Way::Whole,
+            }
+        }
+        (None, false) => Way::Whole,
+    })
+}
+
+/// Checks that a mesh that is to be made in pieces can be.
+pub(super) fn check_pieces(arguments: &OffsetArguments) -> Result<(), Failure> {
+    let option = match arguments {
+        OffsetArguments { tile: Some(_), .. } => "--tile",
+        OffsetArguments { stream: true, .. } => "--stream",
+        _ => return Ok(()),
+    };
+    let Some(output) = &arguments.output else {
+        return Err(Failure::usage(format!("{option} makes a mesh; name it with -o")));
+    };
+    match format(output)? {
+        Format::Ply | Format::Stl => Ok(()),
+        other => {
+            let shown = output.display();
+            Err(Failure::usage(format!(
+                "{shown}: {option} writes PLY and STL, not {other}; write .ply or .stl"
+            )))
+        }
+    }
+}
+
+/// Identifies the input and what is made of it.
+fn job(mesh: &TriMesh, settings: &OffsetSettings) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    env!("CARGO_PKG_VERSION").hash(&mut hasher);
+    // Memory changes nothing of the result.
+    format!("{:?}", OffsetSettings { max_memory: None, keep_band: false, ..settings.clone() })
+        .hash(&mut hasher);
+    for x in mesh.vertices.as_flattened() {
+        x.to_bits().hash(&mut hasher);
+    }
+    mesh.triangles.hash(&mut hasher);
+    hasher.finish()
+}
+
+/// The user knows nothing of the temporary path.
+fn of_output(error: SaveError, output: &Path) -> Failure {
+    SaveError { path: output.into(), ..error }.into()
+}
+
+/// Pieces go to a file as they come.
+struct Streamed {
+    stream: MeshStream,
+    seconds: f64,
+}
+
+impl PieceSink for Streamed {
+    fn restart(&mut self) -> Result<(), Error> {
+        Ok(self.stream.clear()?)
+    }
+
+    fn piece(&mut self, piece: &SlabContour) -> Result<(), Error> {
+        let started = Instant::now();
+        self.stream.append(&piece.mesh, piece.vertices.clone(), piece.triangles.clone())?;
+        self.seconds += started.elapsed().as_secs_f64();
+        Ok(())
+    }
+}
+
+/// The only piece of a tile.
+struct Tiled {
+    staged: PathBuf,
+    tile: Tile,
+    f64: bool,
+    seconds: f64,
+}
+
+impl PieceSink for Tiled {
+    fn restart(&mut self) -> Result<(), Error> {
+        // A tile that the surface does not pass is a file without triangles.
+        Ok(save_tile(&self.staged, &TriMesh::default(), 0..0, 0..0, self.tile, coordinates(self.f64))?)
+    }
+
+    fn piece(&mut self, piece: &SlabContour) -> Result<(), Error> {
+        let started = Instant::now();
+        let (vertices, triangles) = (piece.vertices.clone(), piece.triangles.clone());
+        save_tile(&self.staged, &piece.mesh, vertices, triangles, self.tile, coordinates(self.f64))?;
+        self.seconds += started.elapsed().as_secs_f64();
+        Ok(())
+    }
+}

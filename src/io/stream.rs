@@ -1,0 +1,153 @@
+//! A mesh written piece by piece, by someone who never holds all of it.
+//!
+//! A PLY file has all vertices before the first face, and the numbers of both before either. So vertices and faces
+//! go to files without a name beside the target, and are put together at the end. STL takes triangles as they come, and
+//! gets their number at the end.
+
+use super::error::{SaveError, SaveProblem};
+use super::{Coordinates, Format, ply, stl};
+use std::fs::File;
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use crate::mesh::TriMesh;
+
+/// Bytes collected before they are written.
+const BUFFER: usize = 1 << 20;
+
+/// A mesh file in the making: the same bytes as [`save`](super::save) writes of the mesh as a whole.
+#[derive(Debug)]
+pub struct MeshStream {
+    path: PathBuf,
+    coordinates: Coordinates,
+    vertices: u64,
+    triangles: u64,
+    body: Body,
+}
+
+#[derive(Debug)]
+enum Body {
+    /// Vertices and faces, to be put together.
+    Ply([BufWriter<File>; 2]),
+    /// The file itself.
+    Stl(BufWriter<File>),
+}
+
+impl MeshStream {
+    /// Creates the file `path`, or empties it: PLY or STL, by its extension. Unlike [`save`](super::save) this writes in
+    /// place; the file is whole only after [`finish`](Self::finish).
+    ///
+    /// # Errors
+    /// When the extension is another one, or no file can be created there.
+    pub fn create(path: &Path, coordinates: Coordinates) -> Result<MeshStream, SaveError> {
+        let at = |problem| SaveError { path: path.to_path_buf(), problem };
+        let format = Format::of(path).map_err(|e| at(SaveProblem::Extension(e)))?;
+        let create = || -> io::Result<Option<Body>> {
+            let buffered = |file| BufWriter::with_capacity(BUFFER, file);
+            let directory = path.parent().filter(|p| *p != Path::new("")).unwrap_or(Path::new("."));
+            Ok(match format {
+                Format::Ply => {
+                    let part = || tempfile::tempfile_in(directory);
+                    Some(Body::Ply([buffered(part()?), buffered(part()?)]))
+                }
+                Format::Stl => {
+                    let mut file = buffered(File::create(path)?);
+                    file.write_all(&stl::head(0))?;
+                    Some(Body::Stl(file))
+                }
+                Format::Obj | Format::Off => None,
+            })
+        };
+        let body = create().map_err(|e| at(SaveProblem::Create(e)))?;
+        let body = body.ok_or_else(|| at(SaveProblem::NotInPieces(format)))?;
+        Ok(MeshStream { path: path.to_path_buf(), coordinates, vertices: 0, triangles: 0, body })
+    }
+
+    /// Adds the vertices and triangles of `mesh` with the given numbers. The other vertices of these triangles
+    /// are those that stand before and after in `mesh`: of pieces that were added before, or will be.
+    ///
+    /// # Errors
+    /// When writing fails, or the format cannot hold the mesh.
+    pub fn append(
+        &mut self,
+        mesh: &TriMesh,
+        vertices: Range<usize>,
+        triangles: Range<usize>,
+    ) -> Result<(), SaveError> {
+        let own = &mesh.vertices[vertices.clone()];
+        let single = matches!(self.body, Body::Stl(_)) || self.coordinates == Coordinates::F32;
+        let fits = |x: f64| if single { (x as f32).is_finite() } else { x.is_finite() };
+        if let Some(vertex) = own.iter().position(|v| !v.iter().all(|&x| fits(x))) {
+            return Err(self.failed(SaveProblem::Coordinate { vertex, position: own[vertex] }));
+        }
+        let first = self.vertices as i64 - vertices.start as i64;
+        self.vertices += own.len() as u64;
+        self.triangles += triangles.len() as u64;
+        let limit = u64::from(u32::MAX);
+        if self.vertices > limit || matches!(self.body, Body::Stl(_)) && self.triangles > limit {
+            return Err(self.failed(SaveProblem::TooManyTriangles));
+        }
+        let written = match &mut self.body {
+            Body::Ply([body, faces]) => {
+                let number = |v: u32| (first + i64::from(v)) as u32;
+                let numbered = mesh.triangles[triangles].iter().map(|t| t.map(number));
+                ply::write_vertices(own, self.coordinates, body)
+                    .and_then(|()| ply::write_faces(numbered, faces))
+            }
+            Body::Stl(file) => stl::write_triangles(triangles.map(|t| mesh.corners(t)), file),
+        };
+        written.map_err(|e| self.failed(SaveProblem::Write(e)))
+    }
+
+    /// Forgets all that was added.
+    ///
+    /// # Errors
+    /// When the files cannot be emptied.
+    pub fn clear(&mut self) -> Result<(), SaveError> {
+        let empty = |file: &mut BufWriter<File>, keep: u64| {
+            file.flush()?;
+            file.get_ref().set_len(keep)?;
+            file.seek(SeekFrom::Start(keep)).map(|_| ())
+        };
+        (self.vertices, self.triangles) = (0, 0);
+        let emptied = match &mut self.body {
+            Body::Ply(parts) => parts.iter_mut().try_for_each(|part| empty(part, 0)),
+            Body::Stl(file) => empty(file, stl::HEAD as u64),
+        };
+        emptied.map_err(|e| self.failed(SaveProblem::Write(e)))
+    }
+
+    /// Completes the file. Returns the numbers of vertices and triangles.
+    ///
+    /// # Errors
+    /// When writing fails.
+    pub fn finish(self) -> Result<(u64, u64), SaveError> {
+        let MeshStream { path, coordinates, vertices, triangles, body } = self;
+        let finish = || -> io::Result<()> {
+            match body {
+                Body::Ply(parts) => {
+                    let mut file = File::create(&path)?;
+                    file.write_all(&ply::header(vertices, triangles, coordinates, &[]))?;
+                    for part in parts {
+                        let mut part = part.into_inner().map_err(io::IntoInnerError::into_error)?;
+                        part.rewind()?;
+                        io::copy(&mut part, &mut file)?;
+                    }
+                    Ok(())
+                }
+                Body::Stl(file) => {
+                    let mut file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
+                    file.rewind()?;
+                    file.write_all(&stl::head(triangles as u32))
+                }
+            }
+        };
+        finish().map_err(|e| SaveError { path: path.clone(), problem: SaveProblem::Write(e) })?;
+        Ok((vertices, triangles))
+    }
+
+    fn failed(&self, problem: SaveProblem) -> SaveError {
+        SaveError { path: self.path.clone(), problem }
+    }
+}
