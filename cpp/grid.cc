@@ -108,6 +108,24 @@ void LeafGrid<T>::insert(
 }
 
 template <class T>
+void LeafGrid<T>::take(const LeafGrid& other)
+{
+    using Leaf = typename Held<T>::Leaf;
+    mHeld->forget_leaves();
+    auto& tree = mHeld->grid->tree();
+    const auto& from = other.mHeld->grid->constTree();
+    auto tile = from.cbeginValueOff();
+    tile.setMaxDepth(tile.getLeafDepth() - 1);
+    for (; tile; ++tile) {
+        if (*tile == from.background()) continue;
+        openvdb::CoordBBox cube;
+        tile.getBoundingBox(cube);
+        tree.sparseFill(cube, *tile, /*active=*/false);
+    }
+    for (auto leaf = from.cbeginLeaf(); leaf; ++leaf) tree.addLeaf(new Leaf(*leaf));
+}
+
+template <class T>
 std::size_t LeafGrid<T>::leaf_count() const
 {
     return mHeld->leaves().size();

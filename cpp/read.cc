@@ -148,6 +148,14 @@ rust::Vec<MetaItem> items(const openvdb::MetaMap& map)
         item.name = text(it->first);
         item.kind = MetaKind::Text;
         item.text = text(it->second->str());
+        // Text has six digits only.
+        if (const auto* real = dynamic_cast<const openvdb::DoubleMetadata*>(it->second.get())) {
+            item.kind = MetaKind::Real;
+            item.real = real->value();
+        } else if (const auto* integer = dynamic_cast<const openvdb::Int64Metadata*>(it->second.get())) {
+            item.kind = MetaKind::Integer;
+            item.integer = integer->value();
+        }
         list.push_back(std::move(item));
     }
     return list;

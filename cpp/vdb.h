@@ -58,6 +58,8 @@ public:
     const Held<T>& held() const { return *mHeld; }
 
 protected:
+    void take(const LeafGrid& other);
+
     std::shared_ptr<Held<T>> mHeld;
 };
 
@@ -65,6 +67,7 @@ class FloatGrid : public LeafGrid<float> {
 public:
     using LeafGrid::LeafGrid;
 
+    void append(const FloatGrid& other) { take(other); }
     void fill(
         rust::Slice<const std::int32_t> origins,
         rust::Slice<const std::uint32_t> sides,
@@ -83,6 +86,8 @@ public:
 class Int32Grid : public LeafGrid<std::int32_t> {
 public:
     using LeafGrid::LeafGrid;
+
+    void append(const Int32Grid& other) { take(other); }
 };
 
 std::unique_ptr<FloatGrid> new_float_grid(double voxel, float background, rust::Str creator);

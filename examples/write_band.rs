@@ -2,7 +2,7 @@
 //! write_band`.
 
 use exocarp::mesh::shapes;
-use exocarp::offset::{Length, OffsetSettings, VoxelSize, offset};
+use exocarp::offset::{Length, OffsetSettings, VoxelSize, offset_band};
 use exocarp::run::RunSettings;
 use exocarp::vdb::{self, VdbOptions};
 use std::path::Path;
@@ -14,9 +14,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         voxel: VoxelSize::Units(0.02),
         // Contouring needs 1 voxel on each side; other programs expect 3.
         half_width: 3.0,
+        keep_band: true,
         ..OffsetSettings::default()
     };
-    let result = offset(&model, &settings, &RunSettings::with_threads(0)?)?;
+    // The band alone: `offset` makes the mesh as well.
+    let result = offset_band(&model, &settings, &RunSettings::with_threads(0)?)?;
+    let band = result.band.expect("kept, as the settings say");
 
     std::fs::create_dir_all("out")?;
     let path = Path::new("out/example-band.vdb");
@@ -25,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         unit: Some("mm".into()),
         ..VdbOptions::default()
     };
-    vdb::write(path, &result.band.surface, result.band.closest.as_ref(), &options)?;
+    vdb::write(path, &band.surface, band.closest.as_ref(), &options)?;
 
     for grid in vdb::info(path)?.grids {
         println!("{}: {} {}, {} active voxels", path.display(), grid.class, grid.name, grid.active_voxels);

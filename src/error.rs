@@ -3,7 +3,7 @@
 use crate::compare::CompareError;
 use crate::contour::ContourError;
 use crate::edge::TooManyEdges;
-use crate::io::{LoadError, SaveError};
+use crate::io::{LoadError, MergeError, SaveError};
 use crate::offset::{EmptyResult, InputError, MemoryError, SettingsError};
 use crate::run::{Cancelled, ThreadError};
 use crate::vdb::VdbError;
@@ -19,6 +19,9 @@ pub enum Error {
     /// A file could not be written.
     #[error(transparent)]
     Save(#[from] SaveError),
+    /// Tiles cannot be joined.
+    #[error(transparent)]
+    Merge(#[from] MergeError),
     /// The mesh is not suitable.
     #[error(transparent)]
     Input(#[from] InputError),

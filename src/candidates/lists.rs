@@ -33,6 +33,11 @@ struct Leaf {
 }
 
 impl BlockLists {
+    /// Whether no leaf was begun.
+    pub fn is_empty(&self) -> bool {
+        self.leaves.is_empty()
+    }
+
     /// Begins the next leaf.
     pub fn begin_leaf(&mut self) {
         self.leaves.push(Leaf { mask: 0, first: self.ends.len() });

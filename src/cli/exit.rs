@@ -3,7 +3,7 @@
 use exocarp::compare::CompareError;
 use exocarp::contour::ContourError;
 use exocarp::error::Error;
-use exocarp::io::SaveProblem;
+use exocarp::io::{MergeProblem, SaveProblem};
 use exocarp::vdb::VdbError;
 use exocarp::verify::VerifyError;
 use std::io::ErrorKind;
@@ -104,6 +104,12 @@ fn of(error: &Error) -> Exit {
             SaveProblem::Create(e) | SaveProblem::Write(e) | SaveProblem::Replace(e) => of_io(e),
             SaveProblem::Coordinate { .. } | SaveProblem::TooManyTriangles => Exit::Limit,
             _ => Exit::Internal,
+        },
+        Error::Merge(error) => match &error.problem {
+            MergeProblem::Write(e) => of_io(e),
+            MergeProblem::TooLarge => Exit::Limit,
+            MergeProblem::Empty => Exit::Empty,
+            _ => Exit::Input,
         },
         Error::Vdb(error) => match error {
             VdbError::Cancelled(_) => Exit::Interrupted,

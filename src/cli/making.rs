@@ -69,7 +69,7 @@ pub(super) fn make(
         }
         Way::Tile(TileNumber { number, of }) => {
             let staged = session.staging.stage(output)?;
-            let tile = Tile { number, of, job: job(mesh, settings) };
+            let tile = identity(TileNumber { number, of }, mesh, settings);
             let mut sink = Tiled { staged, tile, f64: arguments.f64, seconds: 0.0 };
             let result = offset_in_slabs(mesh, settings, Cut::Tile { number, of }, &mut sink, run);
             let result = result.map_err(|error| match error {
@@ -126,8 +126,8 @@ pub(super) fn check_pieces(arguments: &OffsetArguments) -> Result<(), Failure> {
     }
 }
 
-/// Identifies the input and what is made of it.
-fn job(mesh: &TriMesh, settings: &OffsetSettings) -> u64 {
+/// What a tile's files say of it: its number, and what identifies the input and what is made of it.
+pub(super) fn identity(tile: TileNumber, mesh: &TriMesh, settings: &OffsetSettings) -> Tile {
     let mut hasher = DefaultHasher::new();
     env!("CARGO_PKG_VERSION").hash(&mut hasher);
     // Memory changes nothing of the result.
@@ -137,7 +137,7 @@ fn job(mesh: &TriMesh, settings: &OffsetSettings) -> u64 {
         x.to_bits().hash(&mut hasher);
     }
     mesh.triangles.hash(&mut hasher);
-    hasher.finish()
+    Tile { number: tile.number, of: tile.of, job: hasher.finish() }
 }
 
 /// The user knows nothing of the temporary path.

@@ -1,39 +1,52 @@
 //! `exocarp merge`: tiles joined to the whole.
 
 use super::args::MergeArguments;
-use super::exit::{Exit, Failure, of_io};
-use super::numbers::grouped;
+use super::exit::Failure;
+use super::numbers::{counted, grouped};
+use super::offset::is_vdb;
 use super::outputs;
 use super::session::Session;
-use exocarp::io::{MergeProblem, merge_tiles};
+use exocarp::error::Error;
+use exocarp::io::merge_tiles;
 use exocarp::run::Phase;
+use exocarp::vdb::{VdbError, merge_bands};
+use std::path::Path;
 
 pub(super) fn run(arguments: &MergeArguments, session: &Session) -> Result<(), Failure> {
-    let output = &arguments.output;
+    let MergeArguments { tiles, output, .. } = arguments;
     outputs::check([output.as_path()])?;
     let staged = session.staging.stage(output)?;
-    let ((vertices, triangles), _) = session.phase(Phase::Write, || {
-        merge_tiles(&arguments.tiles, &staged).map_err(|mut error| {
-            if error.path == staged {
-                // The user knows nothing of the temporary path.
-                error.path.clone_from(output);
+    let (what, _) = session.phase(Phase::Write, || {
+        let merge = || -> Result<String, Error> {
+            if is_vdb(output) {
+                let voxels = merge_bands(tiles, &staged)?.surface.active_voxels();
+                return Ok(format!("{} active voxels", grouped(voxels)));
             }
-            let exit = match &error.problem {
-                MergeProblem::Write(e) => of_io(e),
-                MergeProblem::TooLarge => Exit::Limit,
-                _ => Exit::Input,
-            };
-            Failure::new(exit, error.to_string())
-        })
+            let (vertices, triangles) = merge_tiles(tiles, &staged)?;
+            let triangles = format!("{} triangles", grouped(triangles));
+            // STL has none.
+            Ok(if vertices > 0 { format!("{triangles}, {} vertices", grouped(vertices)) } else { triangles })
+        };
+        merge().map_err(|error| of_output(error, &staged, output).into())
     })?;
     session.staging.commit()?;
     session.tell(&format!(
-        "{}: {} triangles, {} vertices of {} tiles, {:.2} s",
+        "{}: {what} of {}, {:.2} s",
         output.display(),
-        grouped(triangles),
-        grouped(vertices),
-        arguments.tiles.len(),
+        counted(tiles.len(), "tile", "tiles"),
         session.wall(),
     ));
     Ok(())
+}
+
+/// The user knows nothing of the temporary path.
+fn of_output(error: Error, staged: &Path, output: &Path) -> Error {
+    match error {
+        Error::Merge(mut error) if error.path == staged => {
+            error.path = output.into();
+            error.into()
+        }
+        Error::Vdb(VdbError::Write { reason, .. }) => VdbError::Write { path: output.into(), reason }.into(),
+        other => other,
+    }
 }

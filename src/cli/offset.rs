@@ -2,13 +2,13 @@
 
 use super::args::{Codec, OffsetArguments, Sign, TileNumber};
 use super::exit::{Failure, of_io};
-use super::making::{check_pieces, make};
+use super::making::{check_pieces, identity, make};
 use super::numbers::{counted, grouped, memory, short};
 use super::outputs;
 use super::resources::peak_rss;
 use super::session::{Session, Verbosity};
 use super::statistics::{MeshFacts, OffsetFile, Phases};
-use exocarp::io::{self, Coordinates, Format, SaveOptions};
+use exocarp::io::{self, Coordinates, Format, SaveOptions, Tile};
 use exocarp::mesh::{CleanReport, Topology, TriMesh, clean};
 use exocarp::offset::{OffsetResult, OffsetSettings, OffsetStatistics, Precision, VoxelSize};
 use exocarp::run::Phase;
@@ -45,7 +45,10 @@ pub(super) fn run(arguments: &OffsetArguments, session: &Session) -> Result<(), 
     warn_of_unseen(&result.statistics, arguments.resolve, session);
 
     let (_, write) = session.phase(Phase::Write, || match (&arguments.vdb, &result.band) {
-        (Some(path), Some(band)) => save_vdb(band, path, arguments, result.statistics.distance, session),
+        (Some(path), Some(band)) => {
+            let tile = arguments.tile.map(|tile| identity(tile, &loaded.mesh, &settings));
+            save_vdb(band, path, tile, arguments, result.statistics.distance, session)
+        }
         _ => Ok(()),
     })?;
     phases.write = written + write;
@@ -96,12 +99,17 @@ fn check_outputs(arguments: &OffsetArguments) -> Result<(), Failure> {
     }
     check_pieces(arguments)?;
     if let Some(path) = &arguments.vdb
-        && !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("vdb"))
+        && !is_vdb(path)
     {
         return Err(Failure::usage(format!("{}: --vdb needs a file name that ends in .vdb", path.display())));
     }
     let all = [&arguments.output, &arguments.vdb, &arguments.stats];
     outputs::check(all.into_iter().flatten().map(|p| p.as_path()))
+}
+
+/// Whether a file's name ends in `.vdb`.
+pub(super) fn is_vdb(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("vdb"))
 }
 
 /// Checks that the extension of a mesh output is known and can hold what was asked for.
@@ -195,6 +203,7 @@ pub(super) fn save_mesh(
 fn save_vdb(
     band: &Band,
     output: &Path,
+    tile: Option<Tile>,
     arguments: &OffsetArguments,
     distance: f64,
     session: &Session,
@@ -212,7 +221,11 @@ fn save_vdb(
         ..VdbOptions::default()
     };
     let staged = session.staging.stage(output)?;
-    vdb::write(&staged, &band.surface, band.closest.as_ref(), &options).map_err(|error| match error {
+    let written = match tile {
+        Some(tile) => vdb::write_tile(&staged, band, tile, &options),
+        None => vdb::write(&staged, &band.surface, band.closest.as_ref(), &options),
+    };
+    written.map_err(|error| match error {
         VdbError::Write { reason, .. } => VdbError::Write { path: output.into(), reason }.into(),
         other => other.into(),
     })

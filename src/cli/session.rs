@@ -93,6 +93,13 @@ impl Session {
     }
 }
 
+impl Drop for Session {
+    /// A command that failed leaves nothing; one that succeeded has put its files in place by now.
+    fn drop(&mut self) {
+        self.staging.discard();
+    }
+}
+
 /// Text on stdout, with a line end.
 pub(super) fn print(text: &str) {
     // A reader that went away (`| head`) is no error of ours.

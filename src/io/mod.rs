@@ -25,6 +25,7 @@
 
 pub(crate) mod atomic;
 mod error;
+mod mesh_tiles;
 mod obj;
 mod off;
 mod ply;
@@ -34,7 +35,7 @@ mod stream;
 #[cfg(test)]
 mod tests;
 mod text;
-mod tile;
+pub(crate) mod tile;
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -42,8 +43,9 @@ use std::path::Path;
 
 pub use error::{LoadError, Place, Problem, SaveError, SaveProblem, UnknownFormat};
 
+pub use mesh_tiles::{merge_tiles, save_tile};
 pub use stream::MeshStream;
-pub use tile::{MergeError, MergeProblem, Tile, is_tile, merge_tiles, save_tile};
+pub use tile::{MergeError, MergeProblem, Tile};
 
 use crate::mesh::TriMesh;
 use error::Fault;

@@ -116,7 +116,10 @@ impl Parts {
         if next == Next::Contour {
             self.inside.extend(batch.inside);
             self.closest.push(batch.closest);
-            self.lists.push((batch.origins, batch.lists));
+            // Leaves that were added where the sign jumps have no lists: edges there ask the hierarchy.
+            if !batch.lists.is_empty() {
+                self.lists.push((batch.origins, batch.lists));
+            }
         }
     }
 }

@@ -31,21 +31,22 @@ pub(super) fn in_shares(layers: &Layers, halo: i32, count: u32) -> Vec<Slab> {
     slabs(layers, halo, &ends)
 }
 
-/// As few slabs as possible with at most `most` leaves each, halo included. Fails with the leaves of a layer and its
-/// halo where those alone are more.
+/// As few slabs as possible with at most `most` leaves each, halo included. Fails with the leaves of the fullest layer
+/// and its halo where those alone are more.
 pub(super) fn within(layers: &Layers, halo: i32, most: u64) -> Result<Vec<Slab>, u64> {
     let around = (halo / LEAF_DIM) as usize;
     let count = layers.leaves.len();
     let computed = |start: usize, end: usize| -> u64 {
         layers.leaves[start.saturating_sub(around)..(end + around).min(count)].iter().sum()
     };
+    let least = (0..count).map(|n| computed(n, n + 1)).max().unwrap_or(0);
+    if least > most {
+        return Err(least);
+    }
     let mut ends = Vec::new();
     let mut start = 0;
     while start < count {
         let mut end = start + 1;
-        if computed(start, end) > most {
-            return Err(computed(start, end));
-        }
         while end < count && computed(start, end + 1) <= most {
             end += 1;
         }
@@ -67,9 +68,11 @@ mod tests {
     /// The leaves that each slab owns.
     fn owned(layers: &Layers, slabs: &[Slab]) -> Vec<u64> {
         let x = |n: usize| Ijk::new(layers.first + LEAF_DIM * n as i32, 0, 0);
-        let of =
-            |slab: &Slab| (0..layers.leaves.len()).filter(|&n| slab.owns(x(n))).map(|n| layers.leaves[n]);
-        slabs.iter().map(|slab| of(slab).sum()).collect()
+        let of = |slab: &Slab| -> u64 {
+            let layers = layers.leaves.iter().enumerate();
+            layers.filter(|&(n, _)| slab.owns(x(n))).map(|(_, leaves)| leaves).sum()
+        };
+        slabs.iter().map(of).collect()
     }
 
     #[test]
@@ -88,9 +91,9 @@ mod tests {
     #[test]
     fn slabs_within_a_limit_are_few() {
         let even = layers(&[10; 12]);
-        // Four layers of one's own and two of halo on either side.
-        let slabs = within(&even, 16, 80).unwrap();
-        assert_eq!(owned(&even, &slabs), [60, 40, 20]);
+        // Two layers of halo, and none beyond the ends.
+        let slabs = within(&even, 16, 70).unwrap();
+        assert_eq!(owned(&even, &slabs), [50, 30, 40]);
         assert_eq!(within(&even, 16, 120).unwrap().len(), 1);
         assert_eq!(within(&even, 16, 40), Err(50));
     }

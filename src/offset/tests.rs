@@ -1,8 +1,10 @@
 //! The whole way, against closed forms and brute force.
 
 use super::*;
-use crate::edge::{EdgeSettings, RootMethod, solve_by};
+use crate::edge::{EdgeNumbers, EdgeSettings, NearTriangles, RootMethod, solve, solve_by};
 use crate::mesh::{measure, shapes};
+use crate::offset::narrow_band::NarrowBand;
+use crate::slab::Slab;
 use crate::verify::tests::audit::audit;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -135,7 +137,8 @@ fn plain_bisection_finds_the_roots_of_the_hybrid_method() {
             narrow_band::build(&distance, &band_settings, None, &run(2)).unwrap();
         let numbers = EdgeNumbers::new(&signs).unwrap();
         let solve = |method| {
-            let settings = EdgeSettings { lattice: band_settings.lattice, r, method };
+            let lattice = band_settings.lattice;
+            let settings = EdgeSettings { lattice, r, method, slab: Slab::WHOLE };
             solve_by(&distance, &settings, &signs, numbers.clone(), &near, &run(2)).unwrap()
         };
         let (hybrid, with_closed_forms) = solve(RootMethod::Hybrid);

@@ -27,7 +27,7 @@ pub(super) mod ffi {
         Integer,
     }
 
-    /// One entry of a file's metadata; `kind` names the field that holds it.
+    /// One entry of a file's metadata; `kind` names the field that holds it. Read ones have `text` in any case.
     struct MetaItem {
         name: String,
         kind: MetaKind,
@@ -105,6 +105,10 @@ pub(super) mod ffi {
 
         /// Turns cubes of nodes into inactive tiles of `value`.
         fn fill(self: Pin<&mut FloatGrid>, origins: &[i32], sides: &[u32], value: f32) -> Result<()>;
+        /// Adds the leaves of another grid, and its tiles that are not of the background.
+        fn append(self: Pin<&mut FloatGrid>, other: &FloatGrid) -> Result<()>;
+        /// Adds the leaves of another grid.
+        fn append(self: Pin<&mut Int32Grid>, other: &Int32Grid) -> Result<()>;
         /// Merges uniform tiles.
         fn prune(self: Pin<&mut FloatGrid>) -> Result<()>;
 

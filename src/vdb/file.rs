@@ -86,15 +86,25 @@ pub fn write(
         VdbPrecision::Half => Some(surface.grid.half_copy(half_background(surface)?)?),
     };
     let grid = half.as_ref().unwrap_or(&surface.grid);
+    write_grids(path, grid, closest, options.compression, &metadata(surface, options))
+}
+
+/// Writes grids as they are.
+pub(super) fn write_grids(
+    path: &Path,
+    surface: &UniquePtr<ffi::FloatGrid>,
+    closest: Option<&ClosestGrid>,
+    compression: Compression,
+    metadata: &Vec<ffi::MetaItem>,
+) -> Result<(), VdbError> {
     let none = UniquePtr::null();
     let closest = closest.map_or(&none, |c| &c.grid);
-    let codec = match options.compression {
+    let codec = match compression {
         Compression::Blosc => ffi::Codec::Blosc,
         Compression::Zip => ffi::Codec::Zip,
         Compression::None => ffi::Codec::None,
     };
-    ffi::write_file(bytes(path), grid, closest, codec, &metadata(surface, options))
-        .map_err(|e| VdbError::write(path, e))?;
+    ffi::write_file(bytes(path), surface, closest, codec, metadata).map_err(|e| VdbError::write(path, e))?;
     stamp::stamp(path).map_err(|e| VdbError::write(path, e))
 }
 

@@ -27,6 +27,7 @@ mod info;
 mod leaves;
 mod peer;
 mod stamp;
+mod tiles;
 
 pub use error::VdbError;
 pub use file::{
@@ -35,3 +36,4 @@ pub use file::{
 pub use grid::{Band, ClosestGrid, SurfaceGrid};
 pub use info::{FileInfo, GridInfo, info};
 pub use peer::{BandWidths, Polygons, Scheme, VdbLevelSet};
+pub use tiles::{merge_bands, write_tile};
