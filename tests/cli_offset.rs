@@ -86,7 +86,7 @@ fn the_statistics_file_has_the_fields_of_the_contract() {
         keys(&stats),
         [
             "exocarp", "command", "input", "settings", "phases", "wall", "peak_rss", "filter", "edges",
-            "contour", "unseen", "halvings", "vdb"
+            "contour", "unseen", "slabs", "halvings", "vdb"
         ]
     );
     let has = |part: &str, fields: &[&str]| {

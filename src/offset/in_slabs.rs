@@ -3,7 +3,7 @@
 use super::on_slab::on_slab;
 use super::resolving::until_seen;
 use super::stored_band::StoredBand;
-use super::unsuitable::{EmptyResult, MemoryError, leaves_within};
+use super::unsuitable::{EmptyResult, MemoryError, check_countable, leaves_within};
 use super::{OffsetResult, OffsetSettings, OffsetStatistics, Prepared};
 use crate::band::{BandSettings, count_layers};
 use crate::contour::{SlabContour, halo};
@@ -99,6 +99,7 @@ pub fn offset_in_slabs(
 /// The slabs to work off.
 fn cut_slabs(prepared: &Prepared<'_>, settings: &BandSettings, cut: Cut) -> Result<Vec<Slab>, Error> {
     let Prepared { distance, run, .. } = *prepared;
+    check_countable(distance.mesh(), settings)?;
     let halo = halo(&prepared.settings.contour(settings.lattice));
     let layers = count_layers(distance, settings, run)?;
     if layers.leaves.is_empty() {

@@ -2,6 +2,7 @@
 
 use super::SignMode;
 use crate::band::BandSettings;
+use crate::edge::TooManyEdges;
 use crate::distance::{SignedDistance, largest_depth};
 use crate::geom::aabb::Aabb;
 use crate::mesh::{Topology, TriMesh, measure};
@@ -143,6 +144,15 @@ pub(super) fn check_memory(
     let room = (allowed as f64 - fixed).max(0.1 * allowed as f64);
     let smallest_voxel = (area * per_cell / room).sqrt();
     Err(MemoryError { voxel, needed: needed as u64, allowed, smallest_voxel })
+}
+
+/// Refuses what would have more vertices than can be numbered, in slabs or not, before leaves are counted for a long
+/// time.
+pub(super) fn check_countable(mesh: &TriMesh, settings: &BandSettings) -> Result<(), TooManyEdges> {
+    // The area is estimated too high where the surface folds; what gets past is found when edges are numbered.
+    const LEEWAY: f64 = 4.0;
+    let cells = offset_area(mesh, settings.r) / settings.lattice.voxel.powi(2);
+    if cells > LEEWAY * f64::from(u32::MAX) { Err(TooManyEdges) } else { Ok(()) }
 }
 
 /// An estimate of the offset surface's area. A ball with the mesh's area A grows to A + 2 sqrt(4 pi A) r +
