@@ -5,7 +5,9 @@
 #   make demo MODEL=scan.ply ARGS="--sign pseudonormal"
 #   make test                       all tests
 #   make test-full                  also the long ones, in release
-#   make lint bench doc setup
+#   make bench                      each stage, and the whole beside OpenVDB's tools and MeshLib
+#   make instructions OLD=a NEW=b   two commits by instruction counts
+#   make lint doc setup
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := demo
@@ -17,7 +19,15 @@ D ?= 2%
 # More options for `exocarp offset`.
 ARGS ?=
 
-.PHONY: setup build demo test test-full lint bench doc clean
+# What `make bench` compares with the peers, and the interpreter that may have meshlib.
+BENCH_MODEL ?= anchor
+BENCH_RESOLUTION ?= 256
+PYTHON ?= python3
+# What `make instructions` compares.
+OLD ?= HEAD~1
+NEW ?= HEAD
+
+.PHONY: setup build demo test test-full lint bench instructions doc clean
 
 setup:
 	@bash scripts/setup.sh
@@ -38,8 +48,17 @@ lint: setup
 	cargo fmt --check
 	cargo clippy --all-targets --locked -- -D warnings
 
-bench: setup
+# Each stage, then the whole beside the peers, in turn; MeshLib if PYTHON can import it.
+bench: build
 	cargo bench --locked
+	@mkdir -p out
+	target/release/exocarp model '$(BENCH_MODEL)' -o out/bench.ply
+	target/release/exocarp compare out/bench.ply -d 2% --resolution $(BENCH_RESOLUTION) --runs 5 --once-above 25 \
+	    --python '$(PYTHON)'
+
+# Instructions of two commits on a small case: make instructions OLD=HEAD~1 NEW=HEAD
+instructions:
+	@bash scripts/instructions.sh '$(OLD)' '$(NEW)'
 
 doc: setup
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked

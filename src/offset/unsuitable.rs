@@ -2,8 +2,8 @@
 
 use super::SignMode;
 use crate::band::BandSettings;
-use crate::edge::TooManyEdges;
 use crate::distance::{SignedDistance, largest_depth};
+use crate::edge::TooManyEdges;
 use crate::geom::aabb::Aabb;
 use crate::mesh::{Topology, TriMesh, measure};
 use glam::DVec3;
