@@ -6,6 +6,7 @@ use crate::edge::TooManyEdges;
 use crate::io::{LoadError, MergeError, SaveError};
 use crate::offset::{EmptyResult, InputError, MemoryError, SettingsError};
 use crate::run::{Cancelled, ThreadError};
+use crate::thicken::ThickenError;
 use crate::vdb::VdbError;
 use crate::verify::VerifyError;
 
@@ -46,6 +47,9 @@ pub enum Error {
     /// A verification cannot be done.
     #[error(transparent)]
     Verify(#[from] VerifyError),
+    /// A patch cannot be thickened.
+    #[error(transparent)]
+    Thicken(#[from] ThickenError),
     /// A comparison could not be made.
     #[error(transparent)]
     Compare(CompareError),

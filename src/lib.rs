@@ -19,6 +19,7 @@ pub mod unseen;
 pub mod contour;
 pub mod offset;
 pub mod verify;
+pub mod thicken;
 pub mod compare;
 pub mod paper;
 

@@ -193,7 +193,7 @@ pub fn contour_slab(
         let Placements { mut vertices, mut wishes, mut statistics } = placed;
         let mut faces = face_vertex::face_vertices(&cells, &vertices, run)?;
         vertices.append(&mut faces.positions);
-        let Triangulation { mut mesh, far, statistics: polygons } =
+        let Triangulation { mut mesh, far, statistics: polygons, .. } =
             output::triangulate(&cells, &faces, vertices, settings.cut, &phase)?;
         statistics += polygons;
         if let Some(surface) = surface {
@@ -237,6 +237,36 @@ pub fn contour_slab(
 pub fn halo(settings: &ContourSettings) -> i32 {
     let stages = recover::STAGES.len() + settings.tolerance.map_or(0, |_| refine::STAGES);
     LEAF_DIM * (rounds::AT_CUT + 2 * stages as i32 + 2)
+}
+
+/// The same as [`contour`] without a surface to ask, and with the number of triangles around each crossed edge, in the
+/// order of the edges' numbers, which is that of the triangles.
+///
+/// # Errors
+/// As [`contour`].
+///
+/// # Panics
+/// As [`contour`].
+pub(crate) fn contour_by_edge(
+    signs: &SignField,
+    crossings: &Crossings,
+    lattice: Lattice,
+    precision: Precision,
+    run: &RunSettings,
+) -> Result<(TriMesh, Vec<u8>), ContourError> {
+    assert_eq!(crossings.samples.len(), crossings.numbers.len(), "one sample for each crossing");
+    let grid = Grid::new(lattice, precision, reach(signs, crossings))?;
+    let phase = run.phase(Phase::Contour, 2 * signs.len() as u64);
+    run.install(|| {
+        let numbers = CellNumbers::new(signs, run)?;
+        let (cells, Placements { mut vertices, .. }) =
+            Cells::place(signs, crossings, grid, Slab::WHOLE, &numbers, None, &phase)?;
+        let mut faces = face_vertex::face_vertices(&cells, &vertices, run)?;
+        vertices.append(&mut faces.positions);
+        let Triangulation { mesh, sizes, .. } =
+            output::triangulate(&cells, &faces, vertices, CutMethod::default(), &phase)?;
+        Ok((mesh.into_ordered().mesh, sizes))
+    })
 }
 
 /// The largest index, in size, of a corner of an active cell.

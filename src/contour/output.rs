@@ -23,6 +23,8 @@ struct LeafOutput {
     edge_vertices: Vec<[f64; 3]>,
     /// Feature vertices of polygons that are far from the surface.
     far: Vec<u32>,
+    /// The number of triangles of each polygon.
+    sizes: Vec<u8>,
     /// Polygons.
     quads: u64,
 }
@@ -34,6 +36,8 @@ pub struct Triangulation {
     pub mesh: LeafMesh,
     /// By leaf the feature vertices of polygons that are far from the surface.
     pub far: Vec<Vec<u32>>,
+    /// The number of triangles around each crossed edge.
+    pub sizes: Vec<u8>,
     /// Counts.
     pub statistics: ContourStatistics,
 }
@@ -89,6 +93,7 @@ pub fn triangulate(
     let quads: u64 = owned().map(|(output, _)| output.quads).sum();
     let split: u64 = owned().map(|(output, _)| output.edge_vertices.len() as u64).sum();
     let face_vertices = owned().map(|(_, &leaf)| faces.range(leaf).len() as u64).sum();
+    let sizes = outputs.iter().flat_map(|output| output.sizes.iter().copied()).collect();
     let mut triangles = vec![[0; 3]; count];
     let parts = cut(&mut triangles, outputs.iter().map(|o| o.triangles.len()));
     outputs.into_par_iter().zip(firsts).zip(parts).with_min_len(16).for_each(|((output, first), part)| {
@@ -105,7 +110,7 @@ pub fn triangulate(
     };
     let added = vec![Vec::new(); leaves.len()];
     let mesh = LeafMesh { mesh: TriMesh { vertices, triangles }, ranges, added, runs, gone: Vec::new() };
-    Ok(Triangulation { mesh, far, statistics })
+    Ok(Triangulation { mesh, far, sizes, statistics })
 }
 
 /// A range of numbers, which fit.
@@ -153,6 +158,7 @@ fn in_leaf(
                 }
                 output.edge_vertices.push(hub);
             }
+            output.sizes.push((output.triangles.len() - first) as u8);
             output.quads += 1;
         },
     );

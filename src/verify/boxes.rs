@@ -68,7 +68,7 @@ fn above(x: f64) -> f32 {
 
 /// The tree.
 #[derive(Debug)]
-pub(super) struct BoxTree {
+pub(crate) struct BoxTree {
     /// Triangle numbers along the curve.
     order: Vec<u32>,
     /// Their boxes, in the same order.

@@ -14,7 +14,7 @@
 //! given. The other figures are taken at samples, which depend on the seed alone: a report is the same for
 //! every number of threads.
 
-mod boxes;
+pub(crate) mod boxes;
 mod case;
 mod creases;
 mod distance_error;

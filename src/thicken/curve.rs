@@ -1,0 +1,76 @@
+//! The closest point of the boundary curve.
+
+use super::boundary::Boundary;
+use crate::geom::triangle::Feature;
+use crate::mesh::TriMesh;
+use crate::ssvh::Ssvh;
+use glam::DVec3;
+
+/// The boundary's edges, ready for queries.
+#[derive(Debug)]
+pub(super) struct Curve<'a> {
+    boundary: &'a Boundary,
+    ssvh: Ssvh,
+    /// Per edge its loop and its number there.
+    edges: Vec<[u32; 2]>,
+    /// Per loop the arc length at each of its vertices, and its whole length.
+    arcs: Vec<Vec<f64>>,
+}
+
+/// A point of the boundary.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CurvePoint {
+    /// The loop.
+    pub number: u32,
+    /// The arc length from the loop's first vertex.
+    pub arc: f64,
+    pub distance: f64,
+}
+
+impl<'a> Curve<'a> {
+    /// The boundary curve of `mesh`, which must have one.
+    pub fn new(mesh: &TriMesh, boundary: &'a Boundary) -> Curve<'a> {
+        let mut segments = TriMesh { vertices: mesh.vertices.clone(), triangles: Vec::new() };
+        let (mut edges, mut arcs) = (Vec::new(), Vec::new());
+        for (number, around) in (0u32..).zip(&boundary.loops) {
+            let mut own = vec![0.0];
+            let mut length = 0.0;
+            for (position, &a) in (0u32..).zip(around) {
+                let b = around[(position as usize + 1) % around.len()];
+                // A segment is a triangle of which two corners are one.
+                segments.triangles.push([a, b, b]);
+                edges.push([number, position]);
+                let [p, q] = [a, b].map(|v| DVec3::from(mesh.vertices[v as usize]));
+                length += (q - p).length();
+                own.push(length);
+            }
+            arcs.push(own);
+        }
+        Curve { boundary, ssvh: Ssvh::new(&segments), edges, arcs }
+    }
+
+    /// The closest point to `p`; `guess` is the number of an edge near it.
+    pub fn closest(&self, p: DVec3) -> CurvePoint {
+        let hit = self.ssvh.closest(p);
+        let [number, position] = self.edges[hit.triangle as usize];
+        let segment = self.ssvh.triangle(hit.triangle);
+        let closest = segment.closest(p);
+        let arcs = &self.arcs[number as usize];
+        let along = match closest.feature {
+            Feature::Vertex(_) | Feature::Edge(_) | Feature::Face => {
+                (closest.point - segment.corners[0]).length()
+            }
+        };
+        CurvePoint { number, arc: arcs[position as usize] + along, distance: hit.distance_squared.sqrt() }
+    }
+
+    /// The arc length at each vertex of a loop, and the whole.
+    pub fn arcs(&self, number: u32) -> &[f64] {
+        &self.arcs[number as usize]
+    }
+
+    /// The vertices of a loop.
+    pub fn vertices(&self, number: u32) -> &[u32] {
+        &self.boundary.loops[number as usize]
+    }
+}

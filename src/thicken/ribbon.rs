@@ -1,0 +1,254 @@
+//! The strip of triangles between a boundary loop of S and the rim of the section below it.
+//!
+//! ```text
+//!   b0 ------- b1 ------------ b2     boundary of S
+//!    | \      / | \  ...        |
+//!    |   \  /   |   \           |
+//!   l0 -- l1 -- l2 -- l3 - ... -lm    rim
+//! ```
+//!
+//! Every strip is a path of rungs (i, j) from (0, 0) to (n, m), a step along one of the two at a time. The cheapest one
+//! is found by dynamic programming (the minimal-area triangulation of Barequet and Sharir, \[WC13\] section 4.2, for two
+//! polygons), without the triangles that are known to meet something.
+
+use glam::DVec3;
+use std::collections::BTreeSet;
+
+/// A step of the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Step {
+    /// From rung (i, j) to (i + 1, j): the triangle of the boundary's edge i and rim vertex j.
+    Boundary(u32, u32),
+    /// From rung (i, j) to (i, j + 1): the triangle of the rim's edge j and boundary vertex i.
+    Rim(u32, u32),
+}
+
+/// A polygon of a ribbon, its first vertex once more at its end.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Side {
+    /// Vertex numbers.
+    pub vertices: Vec<u32>,
+    /// Positions.
+    pub points: Vec<DVec3>,
+    /// Arc length along the boundary, of the rim's vertices that of their closest points.
+    pub arcs: Vec<f64>,
+}
+
+/// What is to be joined.
+#[derive(Clone, Debug)]
+pub(super) struct Ribbon {
+    /// In the direction of the triangles of S.
+    pub boundary: Side,
+    /// In the same direction, against that of the section's triangles.
+    pub rim: Side,
+    /// How far a rung may lead along the boundary, in model units.
+    pub reach: f64,
+    /// Steps that must not be taken.
+    pub forbidden: BTreeSet<Step>,
+}
+
+/// What the square of a rung's length counts beside a triangle's area. On a flat wall all strips have the same area, and
+/// the one with the shortest rungs has the best triangles; much more, and it would not follow the wall's bends.
+const RUNG: f64 = 0.2;
+
+/// What a fold counts, beside the area of the triangles at it: more than any detour.
+const FOLD: f64 = 30.0;
+
+impl Ribbon {
+    /// The cheapest strip; `None` when there is none.
+    pub fn cheapest(&self) -> Option<Vec<Step>> {
+        let (n, m) = (self.boundary.points.len(), self.rim.points.len());
+        let rows = self.rows();
+        let width = |i: usize| (rows[i][1] + 1).saturating_sub(rows[i][0]);
+        let mut starts = vec![0usize];
+        for i in 0..n {
+            starts.push(starts[i] + width(i));
+        }
+        // Per rung whether its best path comes along the boundary.
+        let mut along_boundary = vec![false; starts[n]];
+        let mut previous: Vec<f64> = Vec::new();
+        for i in 0..n {
+            let [low, high] = rows[i];
+            let mut costs = vec![f64::INFINITY; width(i)];
+            for j in low..=high {
+                let mut best = if (i, j) == (0, 0) { 0.0 } else { f64::INFINITY };
+                if i > 0 && (rows[i - 1][0]..=rows[i - 1][1]).contains(&j) {
+                    let before = previous[j - rows[i - 1][0]];
+                    let cost = before + self.cost(Step::Boundary(i as u32 - 1, j as u32));
+                    if cost < best {
+                        best = cost;
+                        along_boundary[starts[i] + j - low] = true;
+                    }
+                }
+                if j > low {
+                    let cost = costs[j - 1 - low] + self.cost(Step::Rim(i as u32, j as u32 - 1));
+                    if cost < best {
+                        best = cost;
+                        along_boundary[starts[i] + j - low] = false;
+                    }
+                }
+                costs[j - low] = best;
+            }
+            previous = costs;
+        }
+        if !previous.last().is_some_and(|cost| cost.is_finite()) || rows[n - 1][1] != m - 1 {
+            return None;
+        }
+        let mut steps = Vec::with_capacity(n + m);
+        let (mut i, mut j) = (n - 1, m - 1);
+        while (i, j) != (0, 0) {
+            if along_boundary[starts[i] + j - rows[i][0]] {
+                i -= 1;
+                steps.push(Step::Boundary(i as u32, j as u32));
+            } else {
+                j -= 1;
+                steps.push(Step::Rim(i as u32, j as u32));
+            }
+        }
+        steps.reverse();
+        Some(steps)
+    }
+
+    /// Per boundary vertex the first and the last rim vertex of its rungs; both ascend.
+    fn rows(&self) -> Vec<[usize; 2]> {
+        let (n, m) = (self.boundary.points.len(), self.rim.points.len());
+        // The rim may go back a little along the boundary.
+        let mut farthest = self.rim.arcs.clone();
+        for j in 1..m {
+            farthest[j] = farthest[j].max(farthest[j - 1]);
+        }
+        let mut nearest = self.rim.arcs.clone();
+        for j in (1..m).rev() {
+            nearest[j - 1] = nearest[j - 1].min(nearest[j]);
+        }
+        (0..n)
+            .map(|i| {
+                let arcs = &self.boundary.arcs;
+                let from = arcs[i.saturating_sub(1)] - self.reach;
+                let to = arcs[(i + 1).min(n - 1)] + self.reach;
+                let low = if i == 0 { 0 } else { farthest.partition_point(|&arc| arc < from).min(m - 1) };
+                let high = if i + 1 == n { m } else { nearest.partition_point(|&arc| arc <= to) };
+                [low, high.saturating_sub(1).max(low)]
+            })
+            .collect()
+    }
+
+    fn cost(&self, step: Step) -> f64 {
+        if !self.forbidden.is_empty() && self.forbidden.contains(&step) {
+            return f64::INFINITY;
+        }
+        let [a, b, c] = self.points(step);
+        let normal = (b - a).cross(c - a);
+        let area = 0.5 * normal.length();
+        // The next rung.
+        let rung = match step {
+            Step::Boundary(i, j) => {
+                self.boundary.points[i as usize + 1].distance_squared(self.rim.points[j as usize])
+            }
+            Step::Rim(i, j) => {
+                self.boundary.points[i as usize].distance_squared(self.rim.points[j as usize + 1])
+            }
+        };
+        // A triangle is the right way round when its normal is that of the wall: the boundary's direction, turned
+        // towards the rim.
+        let (direction, down) = match step {
+            Step::Boundary(i, j) => {
+                let i = i as usize;
+                (self.boundary.points[i + 1] - self.boundary.points[i], self.hanging(j as usize))
+            }
+            Step::Rim(_, j) => {
+                let j = j as usize;
+                (self.rim.points[j + 1] - self.rim.points[j], self.hanging(j))
+            }
+        };
+        let wall = down.cross(direction);
+        let folded = normal.dot(wall) < 0.0;
+        area + RUNG * rung + if folded { FOLD * (area + rung) } else { 0.0 }
+    }
+
+    /// From the boundary to a rim vertex.
+    fn hanging(&self, j: usize) -> DVec3 {
+        let arcs = &self.boundary.arcs;
+        let arc = self.rim.arcs[j].clamp(0.0, arcs[arcs.len() - 1]);
+        let i = arcs.partition_point(|&a| a <= arc).clamp(1, arcs.len() - 1);
+        let length = arcs[i] - arcs[i - 1];
+        let share = if length > 0.0 { (arc - arcs[i - 1]) / length } else { 0.0 };
+        self.rim.points[j] - self.boundary.points[i - 1].lerp(self.boundary.points[i], share)
+    }
+
+    fn points(&self, step: Step) -> [DVec3; 3] {
+        let (b, l) = (&self.boundary.points, &self.rim.points);
+        match step {
+            Step::Boundary(i, j) => [b[i as usize + 1], b[i as usize], l[j as usize]],
+            Step::Rim(i, j) => [l[j as usize], l[j as usize + 1], b[i as usize]],
+        }
+    }
+
+    /// The triangle of a step, turned as its neighbours on both sides are.
+    pub fn triangle(&self, step: Step) -> [u32; 3] {
+        let (b, l) = (&self.boundary.vertices, &self.rim.vertices);
+        match step {
+            Step::Boundary(i, j) => [b[i as usize + 1], b[i as usize], l[j as usize]],
+            Step::Rim(i, j) => [l[j as usize], l[j as usize + 1], b[i as usize]],
+        }
+    }
+
+    /// What a step costs, for a choice between two that exclude each other.
+    pub fn cost_of(&self, step: Step) -> f64 {
+        self.cost(step)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two circles, the rim below the boundary.
+    fn circles(n: usize, m: usize) -> Ribbon {
+        let side = |count: usize, z: f64, first: u32| {
+            let point = |i: usize| {
+                let angle = std::f64::consts::TAU * i as f64 / count as f64;
+                DVec3::new(angle.cos(), angle.sin(), z)
+            };
+            Side {
+                vertices: (0..=count).map(|i| first + (i % count) as u32).collect(),
+                points: (0..=count).map(point).collect(),
+                arcs: (0..=count).map(|i| std::f64::consts::TAU * i as f64 / count as f64).collect(),
+            }
+        };
+        Ribbon {
+            boundary: side(n, 0.0, 0),
+            rim: side(m, -0.1, n as u32),
+            reach: 0.3,
+            forbidden: BTreeSet::new(),
+        }
+    }
+
+    #[test]
+    fn a_strip_takes_every_edge_once_and_faces_outward() {
+        for (n, m) in [(40, 40), (4, 60), (90, 25), (3, 3)] {
+            let ribbon = circles(n, m);
+            let steps = ribbon.cheapest().unwrap();
+            assert_eq!(steps.len(), n + m);
+            for &step in &steps {
+                let [a, b, c] = ribbon.points(step);
+                let middle = (a + b + c) / 3.0;
+                assert!((b - a).cross(c - a).dot(middle.with_z(0.0)) > 0.0, "{n} {m} {step:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn forbidden_steps_are_not_taken() {
+        let mut ribbon = circles(30, 30);
+        for _ in 0..5 {
+            let steps = ribbon.cheapest().unwrap();
+            assert!(steps.iter().all(|step| !ribbon.forbidden.contains(step)));
+            ribbon.forbidden.insert(steps[7]);
+        }
+        // Nothing but the end is reached when every step from the start is forbidden.
+        let all = (0..=30).flat_map(|i| [Step::Boundary(0, i), Step::Rim(i, 0)]);
+        ribbon.forbidden.extend(all);
+        assert!(ribbon.cheapest().is_none());
+    }
+}

@@ -1,0 +1,111 @@
+//! What to make: thickness, side, voxel size.
+
+use super::ThickenError;
+use crate::contour::Precision;
+use crate::geom::aabb::Aabb;
+use crate::mesh::TriMesh;
+use crate::offset::{Length, VoxelSize};
+use glam::DVec3;
+
+/// The side of the patch on which the solid lies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Side {
+    /// Behind the patch: opposite to its normals.
+    #[default]
+    Inner,
+    /// In front of it.
+    Outer,
+}
+
+/// What to make.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ThickenSettings {
+    /// Thickness r of the solid, positive.
+    pub thickness: Length,
+    /// The side of the patch on which it lies.
+    pub side: Side,
+    /// Voxel size, less than r/2 (\[WC13\] Remark 1); `None` for r/4.
+    /// With a resolution N, h = (longest side of the patch's bounding box + 2 r) / N.
+    pub voxel: Option<VoxelSize>,
+    /// How often the voxel size may be halved where the lattice is too coarse for the patch.
+    pub halvings: u32,
+    /// Rounds of shape processing (\[WC13\] section 4.3) at most.
+    pub rounds: u32,
+    /// Coordinates of the result.
+    pub precision: Precision,
+}
+
+impl Default for ThickenSettings {
+    fn default() -> Self {
+        ThickenSettings {
+            thickness: Length::OfDiagonal(0.02),
+            side: Side::Inner,
+            voxel: None,
+            halvings: 3,
+            rounds: 20,
+            precision: Precision::F32,
+        }
+    }
+}
+
+/// The settings in model units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Resolved {
+    pub thickness: f64,
+    pub voxel: f64,
+}
+
+/// Voxels per thickness when nothing else is said: twice what \[WC13\] Remark 1 asks for at least.
+const VOXELS_PER_THICKNESS: f64 = 4.0;
+
+/// The largest lattice index: a leaf beyond it must still fit into an i32.
+const LARGEST_INDEX: f64 = (1 << 30) as f64;
+
+impl ThickenSettings {
+    /// Checks what can be checked without a mesh.
+    ///
+    /// # Errors
+    /// The first setting that makes no sense.
+    pub fn validate(&self) -> Result<(), ThickenError> {
+        let (Length::Units(thickness) | Length::OfDiagonal(thickness)) = self.thickness;
+        check_thickness(thickness)?;
+        match self.voxel {
+            Some(VoxelSize::Units(h)) => check_voxel(h),
+            Some(VoxelSize::Resolution(0)) => Err(ThickenError::Resolution),
+            Some(VoxelSize::Resolution(_)) | None => Ok(()),
+        }
+    }
+
+    /// The settings in model units for `mesh`.
+    pub(super) fn resolve(&self, mesh: &TriMesh) -> Result<Resolved, ThickenError> {
+        self.validate()?;
+        let bounds = Aabb::around(mesh.vertices.iter().map(|&v| DVec3::from(v)));
+        let thickness = match self.thickness {
+            Length::Units(r) => r,
+            Length::OfDiagonal(fraction) => fraction * bounds.diagonal(),
+        };
+        check_thickness(thickness)?;
+        let voxel = match self.voxel {
+            None => thickness / VOXELS_PER_THICKNESS,
+            Some(VoxelSize::Units(h)) => h,
+            Some(VoxelSize::Resolution(n)) => (bounds.size().max_element() + 2.0 * thickness) / f64::from(n),
+        };
+        check_voxel(voxel)?;
+        if voxel >= 0.5 * thickness {
+            return Err(ThickenError::TooCoarse { voxel, thickness });
+        }
+        let farthest = bounds.lo.abs().max(bounds.hi.abs()).max_element() + 2.0 * thickness;
+        if farthest / voxel > LARGEST_INDEX {
+            return Err(ThickenError::Range { voxel, smallest: farthest / LARGEST_INDEX });
+        }
+        Ok(Resolved { thickness, voxel })
+    }
+}
+
+fn check_thickness(thickness: f64) -> Result<(), ThickenError> {
+    if thickness > 0.0 && thickness.is_finite() { Ok(()) } else { Err(ThickenError::Thickness(thickness)) }
+}
+
+fn check_voxel(voxel: f64) -> Result<(), ThickenError> {
+    if voxel > 0.0 && voxel.is_finite() { Ok(()) } else { Err(ThickenError::Voxel(voxel)) }
+}
