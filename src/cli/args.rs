@@ -4,6 +4,7 @@ use super::numbers::{bytes, length, resolution, tile, tolerance, voxel};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use exocarp::compare::Method;
 use exocarp::offset::{Length, SignMode, Tolerance};
+use exocarp::thicken::{Side, ThickenSettings};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -38,6 +39,16 @@ Examples:
   exocarp merge tile*.ply -o grown.ply                     the very file of an undivided run
 
 Each tile can be made on a machine of its own; all need the same input and settings.";
+
+const THICKEN_EXAMPLES: &str = "\
+Examples:
+  exocarp thicken face.ply -t 2.5 -o mask.stl                   behind the patch, 2.5 model units thick
+  exocarp thicken face.ply -t 1% --side outer -o mask.ply       in front of it, 1% of the diagonal
+  exocarp thicken face.ply -t 1% --resolution 512 -o mask.ply   a finer lattice for wall and inner shell
+  exocarp thicken closed.ply -t 1 -o shell.ply                  a closed mesh gets a cavity
+
+Every triangle of PATCH is in SOLID with the same coordinates (PLY with 32-bit coordinates and STL round those
+that have more digits; --f64, .obj and .off do not). The voxel size must be less than half of the thickness.";
 
 const COMPARE_EXAMPLES: &str = "\
 Examples:
@@ -118,6 +129,8 @@ pub(super) enum Command {
     Offset(OffsetArguments),
     /// Join the tiles of an offset, made with --tile, to the whole
     Merge(MergeArguments),
+    /// Thicken an open surface patch into a solid on one side of it, or hollow a closed mesh
+    Thicken(ThickenArguments),
     /// Make the same offset with OpenVDB and MeshLib, and compare times, memory and errors
     Compare(CompareArguments),
     /// One run of one method, for `compare`
@@ -215,6 +228,67 @@ pub(super) struct MergeArguments {
     /// Where to write the whole, in the tiles' format
     #[arg(long, short, value_name = "OUTPUT")]
     pub output: PathBuf,
+}
+
+/// `exocarp thicken`.
+#[derive(Args, Debug)]
+#[command(after_help = THICKEN_EXAMPLES)]
+pub(super) struct ThickenArguments {
+    /// The patch to thicken
+    #[arg(value_name = "PATCH")]
+    pub input: PathBuf,
+    /// Thickness of the solid in model units, or in percent of the patch's diagonal
+    #[arg(long, short, value_name = "T", value_parser = length, allow_hyphen_values = true)]
+    pub thickness: Length,
+    /// The side of the patch on which the solid lies: behind it, or where its normals point
+    #[arg(long, value_enum, default_value_t = PatchSide::Inner)]
+    pub side: PatchSide,
+    /// Where to write the solid
+    #[arg(long, short, value_name = "SOLID")]
+    pub output: PathBuf,
+    /// Voxel size in model units, less than half of the thickness [default: a quarter of it]
+    #[arg(long, value_name = "H", value_parser = voxel, allow_negative_numbers = true)]
+    #[arg(conflicts_with = "resolution")]
+    pub voxel: Option<f64>,
+    /// Voxels along the longest side of the patch's bounding box, grown by the thickness
+    #[arg(long, value_name = "N", value_parser = resolution, allow_negative_numbers = true)]
+    pub resolution: Option<u32>,
+    /// Rounds of shape processing at most; it ends when nothing moves
+    #[arg(long, value_name = "N", default_value_t = ThickenSettings::default().rounds)]
+    #[arg(value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub rounds: u32,
+    /// Write PLY with 64-bit coordinates
+    #[arg(long)]
+    pub f64: bool,
+    /// Write settings, times and counts as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub stats: Option<PathBuf>,
+}
+
+/// `--side`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum PatchSide {
+    /// Behind the patch, opposite to its normals
+    Inner,
+    /// In front of it
+    Outer,
+}
+
+impl PatchSide {
+    /// The name in the statistics file.
+    pub fn name(self) -> &'static str {
+        match self {
+            PatchSide::Inner => "inner",
+            PatchSide::Outer => "outer",
+        }
+    }
+
+    pub fn side(self) -> Side {
+        match self {
+            PatchSide::Inner => Side::Inner,
+            PatchSide::Outer => Side::Outer,
+        }
+    }
 }
 
 /// `exocarp compare`.

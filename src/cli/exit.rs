@@ -4,6 +4,7 @@ use exocarp::compare::CompareError;
 use exocarp::contour::ContourError;
 use exocarp::error::Error;
 use exocarp::io::{MergeProblem, SaveProblem};
+use exocarp::thicken::ThickenError;
 use exocarp::vdb::VdbError;
 use exocarp::verify::VerifyError;
 use std::io::ErrorKind;
@@ -96,6 +97,9 @@ fn of(error: &Error) -> Exit {
         Error::Empty(_) => Exit::Empty,
         Error::Compare(CompareError::Setting(_)) => Exit::Usage,
         Error::Compare(CompareError::Temporary(e)) => of_io(e),
+        Error::Thicken(ThickenError::Patch(_)) => Exit::Input,
+        Error::Thicken(ThickenError::Obstacle { .. }) => Exit::Limit,
+        Error::Thicken(_) => Exit::Usage,
         Error::Memory(_) | Error::TooManyEdges(_) | Error::Threads(_) => Exit::Limit,
         Error::Contour(ContourError::Cancelled(_)) => Exit::Interrupted,
         Error::Contour(_) => Exit::Limit,

@@ -18,6 +18,7 @@ mod progress;
 mod resources;
 mod session;
 mod statistics;
+mod thicken;
 mod verify;
 
 use args::{Arguments, Command};
@@ -63,6 +64,7 @@ fn run(arguments: Arguments, started: Instant) -> Result<(), Failure> {
         }
         Command::Offset(command) => offset::run(&command, &Session::start(&arguments.common, started)?),
         Command::Merge(command) => merge::run(&command, &Session::start(&arguments.common, started)?),
+        Command::Thicken(command) => thicken::run(&command, &Session::start(&arguments.common, started)?),
         Command::Compare(command) => compare::run(&command, &Session::start(&arguments.common, started)?),
         Command::Worker(command) => {
             compare::run_worker(&command, &Session::start(&arguments.common, started)?)

@@ -81,7 +81,7 @@ fn settings(arguments: &OffsetArguments, session: &Session) -> Result<OffsetSett
 }
 
 /// The coordinates that the output will have: the promise of no intersections holds for those.
-fn precision(output: &Path, f64: bool) -> Result<Precision, Failure> {
+pub(super) fn precision(output: &Path, f64: bool) -> Result<Precision, Failure> {
     Ok(match format(output)? {
         Format::Obj | Format::Off => Precision::F64,
         Format::Ply if f64 => Precision::F64,
