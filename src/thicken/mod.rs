@@ -32,11 +32,9 @@ use crate::error::Error;
 use crate::lattice::Lattice;
 use crate::mesh::{Topology, TriMesh};
 use crate::run::RunSettings;
-use crate::verify::boxes::BoxTree;
 use boundary::Boundary;
 use nodes::Nodes;
 use open_mesh::OpenMesh;
-use rayon::prelude::*;
 use solid::Solid;
 use std::time::Instant;
 use stitch::Reach;
@@ -135,7 +133,7 @@ impl Work<'_> {
         voxel: f64,
         times: &mut ThickenTimes,
     ) -> Result<Result<TriMesh, Blocked>, Error> {
-        let Work { boundary, distance, settings, run, .. } = *self;
+        let Work { patch, boundary, distance, settings, run } = *self;
         let lattice = Lattice { voxel };
         let started = Instant::now();
         let nodes = Nodes::new(distance, lattice, thickness + BEYOND * voxel, run)?;
@@ -150,31 +148,9 @@ impl Work<'_> {
         times.faces += started.elapsed().as_secs_f64();
 
         let started = Instant::now();
-        let stitched = run.install(|| self.stitch(open, voxel));
-        times.boundary += started.elapsed().as_secs_f64();
-        stitched
-    }
-
-    fn stitch(&self, open: OpenMesh, voxel: f64) -> Result<Result<TriMesh, Blocked>, Error> {
-        let Work { patch, boundary, run, .. } = *self;
-        let first = patch.vertices.len() as u32;
         let reach = Reach { across: 4.0 * voxel, along: 4.0 * voxel };
-        let mut ribbons = match stitch::ribbons(patch, boundary, &open, first, reach) {
-            Ok(ribbons) => ribbons,
-            Err(blocked) => return Ok(Err(blocked)),
-        };
-        let mut mesh = patch.clone();
-        mesh.vertices.extend(&open.mesh.vertices);
-        mesh.triangles.extend(open.mesh.triangles.iter().map(|t| t.map(|v| v + first)));
-        let tree = BoxTree::new(&mesh, (0..mesh.triangles.len() as u32).into_par_iter());
-        if let Err(blocked) = check::check_apart(&mesh, &tree, patch.triangles.len() as u32, run)? {
-            return Ok(Err(blocked));
-        }
-        let strip = match stitch::triangles(&mesh, &tree, &mut ribbons, run)? {
-            Ok(strip) => strip,
-            Err(blocked) => return Ok(Err(blocked)),
-        };
-        mesh.triangles.extend(strip);
-        Ok(Ok(mesh))
+        let stitched = run.install(|| stitch::stitch(patch, boundary, open, reach, run))?;
+        times.boundary += started.elapsed().as_secs_f64();
+        Ok(stitched)
     }
 }

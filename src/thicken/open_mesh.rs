@@ -4,18 +4,21 @@ use super::crossings::{Part, SolidCrossings};
 use crate::band::SignField;
 use crate::contour::{Precision, contour_by_edge};
 use crate::error::Error;
+use crate::geom::triangle::Side;
 use crate::lattice::Lattice;
 use crate::mesh::{Topology, TriMesh};
 use crate::run::RunSettings;
 
-/// Section and shell.
+/// Section and shell: the triangles of a contour that are kept.
 #[derive(Debug)]
 pub(super) struct OpenMesh {
+    /// The whole contour.
     pub mesh: TriMesh,
+    pub topology: Topology,
     /// Per triangle.
     pub parts: Vec<Part>,
-    /// The vertices of each rim, in the direction in which the triangles run through its edges.
-    pub rims: Vec<Vec<u32>>,
+    /// Per triangle whether it is in the result.
+    pub kept: Vec<bool>,
 }
 
 impl OpenMesh {
@@ -31,81 +34,95 @@ impl OpenMesh {
         let per_triangle = sizes.iter().zip(&found.parts);
         let parts: Vec<Part> =
             per_triangle.flat_map(|(&size, &part)| std::iter::repeat_n(part, usize::from(size))).collect();
-        Ok(run.install(|| without_lid(mesh, parts)))
+        let topology = run.install(|| Topology::new(&mesh));
+        let kept: Vec<bool> = parts.iter().map(|&part| part != Part::Lid).collect();
+        let mut open = OpenMesh { mesh, topology, parts, kept };
+        let at_rim = (0..open.mesh.vertices.len() as u32).filter(|&v| open.is_at_rim(v)).collect();
+        open.open_pinches(at_rim);
+        Ok(open)
     }
-}
 
-/// Drops the lid, and what would hang on a rim by a vertex alone.
-fn without_lid(mesh: TriMesh, parts: Vec<Part>) -> OpenMesh {
-    let topology = Topology::new(&mesh);
-    let mut kept: Vec<bool> = parts.iter().map(|&part| part != Part::Lid).collect();
-    // Vertices at the rim.
-    let mut open: Vec<u32> = (0..mesh.vertices.len() as u32)
-        .filter(|&v| {
-            let mut around = topology.around_vertex(v).iter().map(|&t| kept[t as usize]);
-            let first = around.next();
-            around.any(|k| Some(k) != first)
-        })
-        .collect();
-    while let Some(v) = open.pop() {
-        let around = topology.around_vertex(v);
-        let starts = around.iter().filter(|&&t| starts_rim(&mesh, &topology, &kept, t, v)).count();
-        if starts > 1 {
-            for &t in around {
-                if std::mem::replace(&mut kept[t as usize], false) {
-                    open.extend(mesh.triangles[t as usize]);
+    /// Leaves out some more triangles.
+    pub fn drop(&mut self, triangles: impl IntoIterator<Item = usize>) {
+        let mut at_rim = Vec::new();
+        for t in triangles {
+            if std::mem::replace(&mut self.kept[t], false) {
+                at_rim.extend(self.mesh.triangles[t]);
+            }
+        }
+        self.open_pinches(at_rim);
+    }
+
+    /// Whether a vertex has triangles that are kept and others that are not.
+    fn is_at_rim(&self, v: u32) -> bool {
+        let mut around = self.topology.around_vertex(v).iter().map(|&t| self.kept[t as usize]);
+        let first = around.next();
+        around.any(|kept| Some(kept) != first)
+    }
+
+    /// Leaves out what would hang on a rim by one of these vertices alone.
+    fn open_pinches(&mut self, mut at_rim: Vec<u32>) {
+        while let Some(v) = at_rim.pop() {
+            let around = self.topology.around_vertex(v);
+            let starts = |&&t: &&u32| {
+                let corners = self.mesh.triangles[t as usize];
+                Side::ALL.into_iter().any(|s| corners[s.index()] == v && self.is_rim(t, s))
+            };
+            if around.iter().filter(starts).count() > 1 {
+                for &t in around {
+                    if std::mem::replace(&mut self.kept[t as usize], false) {
+                        at_rim.extend(self.mesh.triangles[t as usize]);
+                    }
                 }
             }
         }
     }
-    let mut next = vec![u32::MAX; mesh.vertices.len()];
-    for (t, triangle) in (0u32..).zip(&mesh.triangles) {
-        if !kept[t as usize] {
-            continue;
-        }
-        for side in crate::geom::triangle::Side::ALL {
-            let open = topology.around_edge(t, side).nth(1).is_none_or(|(other, _)| !kept[other as usize]);
-            if open {
+
+    /// Whether a triangle is kept and the one across an edge is not.
+    fn is_rim(&self, t: u32, side: Side) -> bool {
+        self.kept[t as usize]
+            && self.topology.around_edge(t, side).nth(1).is_none_or(|(other, _)| !self.kept[other as usize])
+    }
+
+    /// The vertices of each rim, in the direction in which the kept triangles run through its edges.
+    pub fn rims(&self) -> Vec<Vec<u32>> {
+        let mut next = vec![u32::MAX; self.mesh.vertices.len()];
+        for (t, triangle) in (0u32..).zip(&self.mesh.triangles) {
+            if !self.kept[t as usize] {
+                continue;
+            }
+            for side in Side::ALL.into_iter().filter(|&side| self.is_rim(t, side)) {
                 next[triangle[side.index()] as usize] = triangle[side.next().index()];
             }
         }
-    }
-    // Numbers without those that no triangle has any more.
-    let mut numbers = vec![u32::MAX; mesh.vertices.len()];
-    for (triangle, _) in mesh.triangles.iter().zip(&kept).filter(|(_, kept)| **kept) {
-        triangle.iter().for_each(|&v| numbers[v as usize] = 0);
-    }
-    let mut vertices = Vec::with_capacity(mesh.vertices.len());
-    for (number, position) in numbers.iter_mut().zip(&mesh.vertices).filter(|(n, _)| **n == 0) {
-        *number = vertices.len() as u32;
-        vertices.push(*position);
-    }
-    let mut rims = Vec::new();
-    for start in 0..next.len() {
-        let (mut at, mut rim) = (start, Vec::new());
-        while next[at] != u32::MAX {
-            rim.push(numbers[at]);
-            at = std::mem::replace(&mut next[at], u32::MAX) as usize;
+        let mut rims = Vec::new();
+        for start in 0..next.len() as u32 {
+            let (mut at, mut rim) = (start, Vec::new());
+            while next[at as usize] != u32::MAX {
+                rim.push(at);
+                at = std::mem::replace(&mut next[at as usize], u32::MAX);
+            }
+            if !rim.is_empty() {
+                rims.push(rim);
+            }
         }
-        if !rim.is_empty() {
-            rims.push(rim);
-        }
+        rims
     }
-    let keep = |t: usize| kept[t];
-    let triangles = (0..mesh.triangles.len())
-        .filter(|&t| keep(t))
-        .map(|t| mesh.triangles[t].map(|v| numbers[v as usize]))
-        .collect();
-    let parts = (0..parts.len()).filter(|&t| keep(t)).map(|t| parts[t]).collect();
-    OpenMesh { mesh: TriMesh { vertices, triangles }, parts, rims }
 }
 
-/// Whether the edge of triangle `t` that starts at `v` is on a rim.
-fn starts_rim(mesh: &TriMesh, topology: &Topology, kept: &[bool], t: u32, v: u32) -> bool {
-    let corners = mesh.triangles[t as usize];
-    kept[t as usize]
-        && crate::geom::triangle::Side::ALL
-            .into_iter()
-            .filter(|s| corners[s.index()] == v)
-            .any(|side| topology.around_edge(t, side).nth(1).is_none_or(|(other, _)| !kept[other as usize]))
+/// Drops vertices from number `first` on that no triangle has.
+pub(super) fn without_idle_vertices(mesh: &mut TriMesh, first: usize) {
+    let mut used = vec![false; mesh.vertices.len()];
+    mesh.triangles.as_flattened().iter().for_each(|&v| used[v as usize] = true);
+    let mut numbers: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
+    let mut next = first;
+    for v in first..mesh.vertices.len() {
+        numbers[v] = next as u32;
+        if used[v] {
+            mesh.vertices[next] = mesh.vertices[v];
+            next += 1;
+        }
+    }
+    mesh.vertices.truncate(next);
+    mesh.triangles.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
 }

@@ -5,6 +5,7 @@ use super::curve::Curve;
 use super::open_mesh::OpenMesh;
 use super::ribbon::{Ribbon, Side, Step};
 use super::unsuitable::{Blocked, Obstacle};
+use crate::geom::predicates::projection_axis;
 use crate::geom::triangle_pair::meeting_point;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};
@@ -24,10 +25,14 @@ pub(super) struct Reach {
 
 /// Strips are chosen anew this often without the triangles that meet something. Each time most conflicts are gone; what
 /// is left after so many goes round in circles.
-const TRIES: usize = 40;
+const TRIES: usize = 8;
+
+/// How often the section is cut back where no strip fits, by a ring of triangles each time. A section is a few rings
+/// high.
+const CUTS: usize = 8;
 
 /// Pairs each rim with a boundary loop. Vertices of the rims are numbered on from `first`.
-pub(super) fn ribbons(
+fn ribbons(
     patch: &TriMesh,
     boundary: &Boundary,
     open: &OpenMesh,
@@ -36,8 +41,9 @@ pub(super) fn ribbons(
 ) -> Result<Vec<Ribbon>, Blocked> {
     let curve = Curve::new(patch, boundary);
     let mut rim_of: Vec<Option<usize>> = vec![None; boundary.loops.len()];
-    let mut ribbons = Vec::with_capacity(open.rims.len());
-    for (number, rim) in open.rims.iter().enumerate() {
+    let rims = open.rims();
+    let mut ribbons = Vec::with_capacity(rims.len());
+    for (number, rim) in rims.iter().enumerate() {
         let points: Vec<DVec3> = rim.iter().map(|&v| DVec3::from(open.mesh.vertices[v as usize])).collect();
         let closest: Vec<_> = points.par_iter().with_min_len(64).map(|&p| curve.closest(p)).collect();
         if let Some(far) = closest.iter().position(|c| c.distance > reach.across) {
@@ -106,85 +112,193 @@ pub(super) fn ribbons(
     Ok(ribbons)
 }
 
-/// The triangles of the ribbons, such that none of them meets another or one of `mesh`, whose triangles `tree` holds.
-pub(super) fn triangles(
-    mesh: &TriMesh,
-    tree: &BoxTree,
-    ribbons: &mut [Ribbon],
+/// The patch, the section and the ribbons between them, if they can be joined without intersections.
+pub(super) fn stitch(
+    patch: &TriMesh,
+    boundary: &Boundary,
+    mut open: OpenMesh,
+    reach: Reach,
     run: &RunSettings,
-) -> Result<Result<Vec<[u32; 3]>, Blocked>, Cancelled> {
-    let mut at = [0.0; 3];
-    let mut paths: Vec<Vec<Step>> = vec![Vec::new(); ribbons.len()];
-    let mut stale: Vec<bool> = vec![true; ribbons.len()];
-    for _ in 0..TRIES {
-        run.check()?;
-        for (n, ribbon) in ribbons.iter().enumerate().filter(|&(n, _)| stale[n]) {
-            let Some(path) = ribbon.cheapest() else {
-                let at = ribbon.boundary.points[0].to_array();
+) -> Result<Result<TriMesh, Blocked>, Cancelled> {
+    let first = patch.vertices.len() as u32;
+    let mut mesh = patch.clone();
+    mesh.vertices.extend(&open.mesh.vertices);
+    mesh.triangles.extend(open.mesh.triangles.iter().map(|t| t.map(|v| v + first)));
+    let patch_count = patch.triangles.len();
+    let with_section: Vec<u32> = (0..mesh.triangles.len())
+        .filter(|&t| t < patch_count || open.kept[t - patch_count])
+        .map(|t| t as u32)
+        .collect();
+    let tree = BoxTree::new(&mesh, with_section.into_par_iter());
+    if let Err(blocked) = super::check::check_apart(&mesh, &tree, patch_count as u32, run)? {
+        return Ok(Err(blocked));
+    }
+    let mut cuts = 0;
+    let strip = loop {
+        let mut ribbons = match ribbons(patch, boundary, &open, first, reach) {
+            Ok(ribbons) => ribbons,
+            Err(blocked) => return Ok(Err(blocked)),
+        };
+        let around = Around { mesh: &mesh, tree: &tree, patch: patch_count, kept: &open.kept };
+        match around.fit(&mut ribbons, run)? {
+            Ok(strip) => break strip,
+            Err(conflicts) if cuts == CUTS || conflicts.is_empty() => {
+                let at = conflicts.first().map_or(ribbons[0].boundary.points[0].to_array(), |c| c.at);
                 return Ok(Err(Blocked { obstacle: Obstacle::Ribbon, at }));
-            };
-            paths[n] = path;
-        }
-        // Which ribbon and step each triangle is.
-        let steps: Vec<(usize, Step)> =
-            paths.iter().enumerate().flat_map(|(n, path)| path.iter().map(move |&s| (n, s))).collect();
-        let triangles: Vec<[u32; 3]> = steps.iter().map(|&(n, s)| ribbons[n].triangle(s)).collect();
-        let strip = TriMesh { vertices: mesh.vertices.clone(), triangles };
-        let mut bad: Vec<(usize, Step)> = strip
-            .triangles
-            .par_iter()
-            .enumerate()
-            .with_min_len(16)
-            .filter(|&(n, _)| meets_mesh(mesh, tree, &strip, n))
-            .map(|(n, _)| steps[n])
-            .collect();
-        if bad.is_empty() {
-            let own = BoxTree::new(&strip, (0..strip.triangles.len() as u32).into_par_iter());
-            let pairs = own.pairs(run, Vec::new, |found: &mut Vec<[u32; 2]>, a, b| {
-                if meet(&strip, a as usize, &strip, b as usize).is_some() {
-                    found.push([a, b]);
+            }
+            Err(conflicts) => {
+                let mut dropped: Vec<usize> = Vec::new();
+                for conflict in conflicts {
+                    dropped.extend(conflict.section);
+                    for v in conflict.rim {
+                        let star = open.topology.around_vertex(v - first);
+                        dropped.extend(star.iter().map(|&t| t as usize));
+                    }
                 }
-            })?;
-            // Of two the costlier one has to go.
-            bad = pairs
-                .into_iter()
-                .flatten()
-                .map(|pair| {
-                    let [a, b] = pair.map(|t| steps[t as usize]);
-                    if ribbons[a.0].cost_of(a.1) > ribbons[b.0].cost_of(b.1) { a } else { b }
-                })
-                .collect();
+                open.drop(dropped);
+                cuts += 1;
+            }
         }
-        if bad.is_empty() {
-            return Ok(Ok(strip.triangles));
-        }
-        stale.fill(false);
-        for (n, step) in bad {
-            stale[n] = true;
-            at = match step {
-                Step::Boundary(i, _) | Step::Rim(i, _) => ribbons[n].boundary.points[i as usize].to_array(),
-            };
-            ribbons[n].forbidden.insert(step);
-        }
-    }
-    Ok(Err(Blocked { obstacle: Obstacle::Ribbon, at }))
-}
-
-fn meet(a: &TriMesh, n: usize, b: &TriMesh, m: usize) -> Option<[f64; 3]> {
-    meeting_point(a.triangles[n], a.corners(n), b.triangles[m], b.corners(m))
-}
-
-/// Whether triangle `n` of `strip` has no area or meets one of `mesh`.
-fn meets_mesh(mesh: &TriMesh, tree: &BoxTree, strip: &TriMesh, n: usize) -> bool {
-    let corners = strip.corners(n).map(DVec3::from);
-    if crate::geom::predicates::projection_axis(strip.corners(n)).is_none() {
-        return true;
-    }
-    let lo = corners[0].min(corners[1]).min(corners[2]);
-    let hi = corners[0].max(corners[1]).max(corners[2]);
-    let mut found = false;
-    tree.near(lo.midpoint(hi), 0.5000001 * (hi - lo).max_element(), |t| {
-        found = found || meet(strip, n, mesh, t as usize).is_some();
+    };
+    let mut number = 0;
+    mesh.triangles.retain(|_| {
+        number += 1;
+        number <= patch_count || open.kept[number - 1 - patch_count]
     });
-    found
+    mesh.triangles.extend(strip);
+    super::open_mesh::without_idle_vertices(&mut mesh, first as usize);
+    Ok(Ok(mesh))
+}
+
+/// A step of a ribbon that does not fit.
+#[derive(Debug)]
+struct Conflict {
+    /// Rim vertices at it.
+    rim: Vec<u32>,
+    /// The section's triangles that it meets.
+    section: Vec<usize>,
+    at: [f64; 3],
+}
+
+/// What ribbons must not meet.
+struct Around<'a> {
+    mesh: &'a TriMesh,
+    tree: &'a BoxTree,
+    /// The first triangles are those of the patch.
+    patch: usize,
+    /// Whether each of the others is there.
+    kept: &'a [bool],
+}
+
+impl Around<'_> {
+    /// The triangles of ribbons that meet nothing, or where they would.
+    fn fit(
+        &self,
+        ribbons: &mut [Ribbon],
+        run: &RunSettings,
+    ) -> Result<Result<Vec<[u32; 3]>, Vec<Conflict>>, Cancelled> {
+        let mut paths: Vec<Vec<Step>> = vec![Vec::new(); ribbons.len()];
+        let mut stale: Vec<bool> = vec![true; ribbons.len()];
+        let mut bad: Vec<(usize, Step)> = Vec::new();
+        for tries in 0.. {
+            run.check()?;
+            let mut stuck = false;
+            for (n, ribbon) in ribbons.iter().enumerate().filter(|&(n, _)| stale[n]) {
+                match ribbon.cheapest() {
+                    Some(path) => paths[n] = path,
+                    None => stuck = true,
+                }
+            }
+            if stuck || tries == TRIES {
+                if bad.is_empty() {
+                    // Not even without conflicts: the ends are out of reach of each other.
+                    bad.extend(ribbons.iter().enumerate().map(|(n, _)| (n, Step::Rim(0, 0))));
+                }
+                let conflicts = bad.iter().map(|&(n, step)| self.conflict(&ribbons[n], step)).collect();
+                return Ok(Err(conflicts));
+            }
+            // Which ribbon and step each triangle is.
+            let steps: Vec<(usize, Step)> =
+                paths.iter().enumerate().flat_map(|(n, path)| path.iter().map(move |&s| (n, s))).collect();
+            let triangles: Vec<[u32; 3]> = steps.iter().map(|&(n, s)| ribbons[n].triangle(s)).collect();
+            bad = steps
+                .par_iter()
+                .zip(&triangles)
+                .with_min_len(16)
+                .filter(|&(_, &t)| self.meets(t))
+                .map(|(&step, _)| step)
+                .collect();
+            if bad.is_empty() {
+                let strip = TriMesh { vertices: self.mesh.vertices.clone(), triangles };
+                bad = costlier_of_pairs(&strip, &steps, ribbons, run)?;
+                if bad.is_empty() {
+                    return Ok(Ok(strip.triangles));
+                }
+            }
+            stale.fill(false);
+            for &(n, step) in &bad {
+                stale[n] = true;
+                ribbons[n].forbidden.insert(step);
+            }
+        }
+        unreachable!("tries end")
+    }
+
+    /// Calls `visit` with each triangle near triangle `t` of the strip that it meets.
+    fn meeting(&self, t: [u32; 3], mut visit: impl FnMut(usize)) {
+        let corners = t.map(|v| self.mesh.vertices[v as usize]);
+        let [a, b, c] = corners.map(DVec3::from);
+        let (lo, hi) = (a.min(b).min(c), a.max(b).max(c));
+        // Half the longest side, and a little for rounding.
+        self.tree.near(lo.midpoint(hi), 0.500_001 * (hi - lo).max_element(), |n| {
+            let n = n as usize;
+            let is_there = n < self.patch || self.kept[n - self.patch];
+            if is_there && meeting_point(t, corners, self.mesh.triangles[n], self.mesh.corners(n)).is_some() {
+                visit(n);
+            }
+        });
+    }
+
+    /// Whether triangle `t` of the strip has no area or meets what is there.
+    fn meets(&self, t: [u32; 3]) -> bool {
+        if projection_axis(t.map(|v| self.mesh.vertices[v as usize])).is_none() {
+            return true;
+        }
+        let mut found = false;
+        self.meeting(t, |_| found = true);
+        found
+    }
+
+    fn conflict(&self, ribbon: &Ribbon, step: Step) -> Conflict {
+        let triangle = ribbon.triangle(step);
+        let mut section = Vec::new();
+        self.meeting(triangle, |n| section.extend(n.checked_sub(self.patch)));
+        let (Step::Boundary(_, j) | Step::Rim(_, j)) = step;
+        let rim = match step {
+            Step::Boundary(..) => vec![ribbon.rim.vertices[j as usize]],
+            Step::Rim(..) => ribbon.rim.vertices[j as usize..=j as usize + 1].to_vec(),
+        };
+        Conflict { rim, section, at: self.mesh.vertices[triangle[2] as usize] }
+    }
+}
+
+/// Of each two triangles of the strip that meet the costlier one.
+fn costlier_of_pairs(
+    strip: &TriMesh,
+    steps: &[(usize, Step)],
+    ribbons: &[Ribbon],
+    run: &RunSettings,
+) -> Result<Vec<(usize, Step)>, Cancelled> {
+    let own = BoxTree::new(strip, (0..strip.triangles.len() as u32).into_par_iter());
+    let pairs = own.pairs(run, Vec::new, |found: &mut Vec<[u32; 2]>, a, b| {
+        let (va, vb) = (strip.triangles[a as usize], strip.triangles[b as usize]);
+        if meeting_point(va, strip.corners(a as usize), vb, strip.corners(b as usize)).is_some() {
+            found.push([a, b]);
+        }
+    })?;
+    let costlier = |pair: [u32; 2]| {
+        let [a, b] = pair.map(|t| steps[t as usize]);
+        if ribbons[a.0].cost_of(a.1) > ribbons[b.0].cost_of(b.1) { a } else { b }
+    };
+    Ok(pairs.into_iter().flatten().map(costlier).collect())
 }
