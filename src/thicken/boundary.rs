@@ -5,42 +5,44 @@ use crate::distance::Sample;
 use crate::geom::triangle::{Feature, Side};
 use crate::mesh::{Topology, TriMesh};
 use glam::DVec3;
+use std::collections::BTreeMap;
 
 /// The boundary of an oriented 2-manifold mesh.
 #[derive(Clone, Debug)]
 pub(super) struct Boundary {
     /// Vertex numbers of each loop, in the direction in which the triangles run through its edges.
     pub loops: Vec<Vec<u32>>,
-    /// Per vertex its place on the boundary, or [`NOWHERE`].
-    places: Vec<LoopPlace>,
+    /// Per vertex whether it is on the boundary.
+    on_boundary: Vec<bool>,
     /// Per half-edge (3 t + side) whether it is on the boundary.
     edges: Vec<bool>,
     /// Per vertex of the boundary the outward unit vector in the surface: the mean of its two edges'.
     outward: Vec<DVec3>,
+    /// The vertices in which several fans of triangles touch, ascending.
+    pub touching: Vec<u32>,
+    /// The mean of the unit normals of all triangles there.
+    touching_normals: Vec<DVec3>,
 }
 
-/// Where a boundary vertex is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct LoopPlace {
-    /// The loop's number.
-    pub number: u32,
-    /// The vertex's position in it.
-    pub position: u32,
+/// An edge with one triangle.
+#[derive(Clone, Copy, Debug)]
+struct BoundaryEdge {
+    /// In the direction of its triangle.
+    ends: [u32; 2],
+    triangle: u32,
+    side: Side,
 }
-
-const NOWHERE: LoopPlace = LoopPlace { number: u32::MAX, position: u32::MAX };
 
 impl Boundary {
     /// The boundary of `mesh`.
     ///
     /// # Errors
-    /// When an edge has more than two triangles or two that run the same way, or a vertex more than one fan.
+    /// When an edge has more than two triangles or two that run the same way, or a vertex inside the surface is one of
+    /// another part, too.
     pub fn new(mesh: &TriMesh, topology: &Topology) -> Result<Boundary, PatchError> {
         let defects = topology.defects();
         let ends = |edge: [u32; 2]| edge.map(|v| mesh.vertices[v as usize]);
         let mut edges = vec![false; 3 * mesh.triangles.len()];
-        // The boundary edge that starts at each vertex.
-        let mut next = vec![u32::MAX; mesh.vertices.len()];
         let mut starts = Vec::with_capacity(defects.boundary_edges);
         for (t, triangle) in (0u32..).zip(&mesh.triangles) {
             for side in Side::ALL {
@@ -57,39 +59,27 @@ impl Boundary {
                     continue;
                 }
                 edges[3 * t as usize + side.index()] = true;
-                if next[a as usize] != u32::MAX {
-                    return Err(PatchError::NonManifoldVertex { at: mesh.vertices[a as usize] });
-                }
-                next[a as usize] = b;
-                starts.push((a, t, side));
+                starts.push(BoundaryEdge { ends: [a, b], triangle: t, side });
             }
         }
-        check_fans(mesh, topology)?;
-        let mut places = vec![NOWHERE; mesh.vertices.len()];
-        let mut loops: Vec<Vec<u32>> = Vec::new();
-        for &(start, ..) in &starts {
-            if places[start as usize] != NOWHERE {
-                continue;
-            }
-            let (mut around, mut at) = (Vec::new(), start);
-            while places[at as usize] == NOWHERE {
-                places[at as usize] = LoopPlace { number: loops.len() as u32, position: around.len() as u32 };
-                around.push(at);
-                // Each vertex has one edge in and one out: the walk comes back to where it began.
-                at = next[at as usize];
-            }
-            loops.push(around);
-        }
+        let touching = touching_vertices(mesh, topology)?;
+        let loops = trace(mesh, topology, &starts, &touching);
+        let mut on_boundary = vec![false; mesh.vertices.len()];
         let mut outward = vec![DVec3::ZERO; mesh.vertices.len()];
-        for &(a, t, side) in &starts {
-            let corners = mesh.corners(t as usize).map(DVec3::from);
-            let wall = outward_of(corners, side);
-            for v in [a, next[a as usize]] {
+        for &BoundaryEdge { ends, triangle, side } in &starts {
+            let wall = outward_of(mesh.corners(triangle as usize).map(DVec3::from), side);
+            for v in ends {
+                on_boundary[v as usize] = true;
                 outward[v as usize] += wall;
             }
         }
         outward.iter_mut().for_each(|v| *v = v.normalize_or_zero());
-        Ok(Boundary { loops, places, edges, outward })
+        let mean = |&v: &u32| {
+            let around = topology.around_vertex(v).iter();
+            around.map(|&t| unit_normal(mesh, t)).sum::<DVec3>().normalize_or_zero()
+        };
+        let touching_normals = touching.iter().map(mean).collect();
+        Ok(Boundary { loops, on_boundary, edges, outward, touching, touching_normals })
     }
 
     /// Whether the mesh is closed.
@@ -105,14 +95,14 @@ impl Boundary {
             Feature::Edge(side) => self.edges[3 * triangle as usize + side.index()],
             Feature::Vertex(side) => {
                 let vertex = mesh.triangles[triangle as usize][side.index()];
-                self.places[vertex as usize] != NOWHERE
+                self.on_boundary[vertex as usize]
             }
         }
     }
 
-    /// Where a vertex is on the boundary.
-    pub fn place(&self, vertex: u32) -> Option<LoopPlace> {
-        Some(self.places[vertex as usize]).filter(|place| *place != NOWHERE)
+    /// The unit normal at one of the vertices in which parts of the surface touch.
+    pub fn touching_normal(&self, vertex: u32) -> DVec3 {
+        self.touching.binary_search(&vertex).map_or(DVec3::ZERO, |n| self.touching_normals[n])
     }
 
     /// The normal of the wall that stands on the boundary at a point of it: out of the surface, within it.
@@ -134,43 +124,136 @@ fn outward_of(corners: [DVec3; 3], side: Side) -> DVec3 {
     -inward.normalize_or_zero()
 }
 
-/// Checks that the triangles at each vertex are one fan.
-fn check_fans(mesh: &TriMesh, topology: &Topology) -> Result<(), PatchError> {
-    for v in 0..mesh.vertices.len() as u32 {
-        let around = topology.around_vertex(v);
-        let Some(&first) = around.first() else { continue };
-        // Walk the fan in both directions from the first triangle.
-        let mut seen = 1;
-        for forward in [true, false] {
-            let mut at = first;
-            loop {
-                let corners = mesh.triangles[at as usize];
-                let Some(corner) = Side::ALL.into_iter().find(|s| corners[s.index()] == v) else { break };
-                let side = if forward { corner } else { corner.next().next() };
-                let Some((other, _)) = topology.around_edge(at, side).nth(1) else { break };
-                if other == first {
-                    // All the way round: the other direction has nothing more.
-                    return_if_incomplete(mesh, v, seen, around.len())?;
-                    seen = usize::MAX;
-                    break;
-                }
-                at = other;
-                seen += 1;
-                if seen > around.len() {
-                    break;
-                }
-            }
-            if seen == usize::MAX {
-                break;
-            }
-        }
-        if seen != usize::MAX {
-            return_if_incomplete(mesh, v, seen, around.len())?;
-        }
-    }
-    Ok(())
+fn unit_normal(mesh: &TriMesh, triangle: u32) -> DVec3 {
+    let [a, b, c] = mesh.corners(triangle as usize).map(DVec3::from);
+    (b - a).cross(c - a).normalize_or_zero()
 }
 
-fn return_if_incomplete(mesh: &TriMesh, v: u32, seen: usize, all: usize) -> Result<(), PatchError> {
-    if seen == all { Ok(()) } else { Err(PatchError::NonManifoldVertex { at: mesh.vertices[v as usize] }) }
+/// The vertices with several fans of triangles.
+///
+/// # Errors
+/// Where one of them is closed, and the surface around it leaves no room for another.
+fn touching_vertices(mesh: &TriMesh, topology: &Topology) -> Result<Vec<u32>, PatchError> {
+    let mut touching = Vec::new();
+    for v in 0..mesh.vertices.len() as u32 {
+        let around = topology.around_vertex(v);
+        // An open fan has one edge on the boundary that starts at the vertex.
+        let (mut seen, mut open, mut closed) = (0, 0, 0);
+        let mut visited = vec![false; around.len()];
+        while let Some(first) = visited.iter().position(|v| !v) {
+            let (size, is_open) = fan(mesh, topology, v, around[first], |t| {
+                let n = around.binary_search(&t).unwrap_or(first);
+                !std::mem::replace(&mut visited[n], true)
+            });
+            seen += size;
+            open += usize::from(is_open);
+            closed += usize::from(!is_open);
+        }
+        debug_assert!(seen <= around.len(), "each triangle is in one fan");
+        if closed > 1 || closed == 1 && open > 0 {
+            return Err(PatchError::NonManifoldVertex { at: mesh.vertices[v as usize] });
+        }
+        if open > 1 {
+            touching.push(v);
+        }
+    }
+    Ok(touching)
+}
+
+/// Walks the triangles of a fan around `v` in both directions from `first`, as long as `visit` has not seen them.
+/// Returns how many there are, and whether the fan is open.
+fn fan(
+    mesh: &TriMesh,
+    topology: &Topology,
+    v: u32,
+    first: u32,
+    mut visit: impl FnMut(u32) -> bool,
+) -> (usize, bool) {
+    let mut size = usize::from(visit(first));
+    for forward in [true, false] {
+        let mut at = first;
+        loop {
+            let corners = mesh.triangles[at as usize];
+            let Some(corner) = Side::ALL.into_iter().find(|s| corners[s.index()] == v) else { break };
+            let side = if forward { corner } else { corner.next().next() };
+            let Some((other, _)) = topology.around_edge(at, side).nth(1) else { break };
+            if !visit(other) {
+                // All the way round.
+                return (size, false);
+            }
+            size += 1;
+            at = other;
+        }
+    }
+    (size, true)
+}
+
+/// Joins boundary edges to loops. Where fans touch in a vertex, a loop goes on with the next fan's edge across the gap:
+/// the ribbons along the gaps then join the fans to one ring around the vertex, and the solid is 2-manifold there.
+fn trace(mesh: &TriMesh, topology: &Topology, starts: &[BoundaryEdge], touching: &[u32]) -> Vec<Vec<u32>> {
+    // The edge that starts at each vertex with one fan.
+    let mut from = vec![usize::MAX; mesh.vertices.len()];
+    let mut fans: BTreeMap<u32, Vec<Fan>> = touching.iter().map(|&v| (v, Vec::new())).collect();
+    for (n, edge) in starts.iter().enumerate() {
+        let v = edge.ends[0];
+        from[v as usize] = n;
+        if let Some(fans) = fans.get_mut(&v) {
+            let mut triangles = Vec::new();
+            fan(mesh, topology, v, edge.triangle, |t| {
+                let is_new = !triangles.contains(&t);
+                triangles.push(t);
+                is_new
+            });
+            fans.push(Fan { first: n, triangles });
+        }
+    }
+    for (&v, fans) in &mut fans {
+        sort_around(mesh, starts, v, fans);
+    }
+    let next = |edge: &BoundaryEdge| {
+        let v = edge.ends[1];
+        match fans.get(&v) {
+            None => from[v as usize],
+            Some(fans) => {
+                let own = fans.iter().position(|fan| fan.triangles.contains(&edge.triangle));
+                fans[(own.expect("a boundary edge is one of a fan") + 1) % fans.len()].first
+            }
+        }
+    };
+    let mut done = vec![false; starts.len()];
+    let mut loops = Vec::new();
+    for n in 0..starts.len() {
+        let (mut at, mut around) = (n, Vec::new());
+        // Each edge follows one: the walk comes back to where it began.
+        while !std::mem::replace(&mut done[at], true) {
+            around.push(starts[at].ends[0]);
+            at = next(&starts[at]);
+        }
+        if !around.is_empty() {
+            loops.push(around);
+        }
+    }
+    loops
+}
+
+/// Triangles around a vertex that are joined by edges.
+struct Fan {
+    /// The boundary edge that starts at the vertex.
+    first: usize,
+    triangles: Vec<u32>,
+}
+
+/// Sorts the fans at `v` counter-clockwise around their mean normal.
+fn sort_around(mesh: &TriMesh, starts: &[BoundaryEdge], v: u32, fans: &mut [Fan]) {
+    let at = DVec3::from(mesh.vertices[v as usize]);
+    let normal: DVec3 = fans.iter().flat_map(|fan| &fan.triangles).map(|&t| unit_normal(mesh, t)).sum();
+    let leads = |fan: &Fan| DVec3::from(mesh.vertices[starts[fan.first].ends[1] as usize]) - at;
+    let zero = leads(&fans[0]);
+    let angle = |fan: &Fan| {
+        let to = leads(fan);
+        let angle = normal.dot(zero.cross(to)).atan2(normal.length() * zero.dot(to));
+        if angle < 0.0 { angle + std::f64::consts::TAU } else { angle }
+    };
+    // The one with which angles begin is the first.
+    fans[1..].sort_by(|a, b| angle(a).total_cmp(&angle(b)));
 }

@@ -130,7 +130,7 @@ impl Edge<'_> {
         let solid = self.solid;
         let near = ON_FACE * self.voxel;
         for step in 0.. {
-            let depth = match solid.place(&outside.sample) {
+            let depth = match solid.place(self.at(outside.t), &outside.sample) {
                 Place::Above => Some(-solid.lid),
                 Place::Below => Some(-solid.thickness),
                 Place::Beside | Place::Inside => None,
@@ -155,7 +155,7 @@ impl Edge<'_> {
                 _ => 0.5,
             };
             let middle = self.end(inside.t + share * width, inside.sample.triangle);
-            if solid.place(&middle.sample) == Place::Inside {
+            if solid.place(self.at(middle.t), &middle.sample) == Place::Inside {
                 // As good as on the face, from the inside.
                 if let Some(depth) = depth
                     && (middle.sample.distance - depth).abs() <= near
@@ -187,7 +187,7 @@ impl Edge<'_> {
     /// Where the closest point jumps from one part of S to another.
     fn at_jump(&self, inside: End, outside: End) -> (Crossing, Part) {
         let distance = self.solid.distance;
-        if self.solid.place(&outside.sample) == Place::Beside {
+        if self.solid.place(self.at(outside.t), &outside.sample) == Place::Beside {
             let wall = self.solid.boundary.wall(distance.mesh(), &outside.sample);
             // Where the boundary of another part of S is as near, the middle between both is the wall.
             let apart = (inside.sample.closest - outside.sample.closest).length();

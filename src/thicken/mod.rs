@@ -53,6 +53,10 @@ pub struct ThickenResult {
 /// the section gets so narrow that a patch that is bent within a voxel pierces it.
 const LID: f64 = 0.5;
 
+/// Radius in voxels of the rods that join parts of S which touch in a vertex. A rod must hold nodes at each height, and the
+/// rim around it must stay apart from the vertex; much thicker, and it shows.
+const ROD: f64 = 1.5;
+
 /// Nodes of the band beyond the shell, in voxels: an edge that crosses the shell ends at most one beyond it.
 const BEYOND: f64 = 1.01;
 
@@ -138,7 +142,7 @@ impl Work<'_> {
         let started = Instant::now();
         let nodes = Nodes::new(distance, lattice, thickness + BEYOND * voxel, run)?;
         let lid = LID * voxel;
-        let solid = Solid { distance, boundary, thickness, lid, lists: Some(&nodes.lists) };
+        let solid = Solid { distance, boundary, thickness, lid, rod: ROD * voxel, lists: Some(&nodes.lists) };
         let (signs, triangles) = nodes.classify(&solid, lattice, run);
         times.nodes += started.elapsed().as_secs_f64();
 

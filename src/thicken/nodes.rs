@@ -6,7 +6,6 @@ use crate::candidates::CandidateLists;
 use crate::distance::SignedDistance;
 use crate::edge::NodeTriangles;
 use crate::error::Error;
-use crate::filter::FilterStatistics;
 use crate::lattice::{Ijk, LEAF_SIZE, Lattice};
 use crate::run::RunSettings;
 use crate::slab::Slab;
@@ -21,7 +20,6 @@ pub(super) struct Nodes {
     /// Leaf by leaf 512 closest triangles; -1 beyond the band. In the pieces in which they were made.
     closest: Vec<Vec<i32>>,
     pub lists: CandidateLists,
-    pub statistics: FilterStatistics,
 }
 
 impl Nodes {
@@ -35,13 +33,13 @@ impl Nodes {
     ) -> Result<Nodes, Error> {
         let settings = BandSettings { lattice, r: 0.0, half_width: reach / lattice.voxel, slab: Slab::WHOLE };
         let (mut origins, mut closest, mut lists) = (Vec::new(), Vec::new(), Vec::new());
-        let statistics = build(distance, &settings, run, |batch| {
+        build(distance, &settings, run, |batch| {
             origins.extend_from_slice(&batch.origins);
             closest.push(batch.closest);
             lists.push((batch.origins, batch.lists));
             Ok::<_, Error>(())
         })?;
-        Ok(Nodes { origins, closest, lists: CandidateLists::new(lattice, lists), statistics })
+        Ok(Nodes { origins, closest, lists: CandidateLists::new(lattice, lists) })
     }
 
     /// Which of them are in the solid, and the closest triangles of all.
@@ -79,7 +77,7 @@ fn inside_in_leaf(solid: &Solid<'_>, lattice: Lattice, origin: Ijk, closest: &[i
         let Ok(triangle) = u32::try_from(triangle) else { continue };
         let p = DVec3::from(lattice.world_from_index(Ijk::in_leaf(origin, number)));
         let sample = solid.distance.from_triangle(p, triangle);
-        if solid.place(&sample) == Place::Inside {
+        if solid.place(p, &sample) == Place::Inside {
             mask[number >> 6] |= 1 << (number & 63);
         }
     }

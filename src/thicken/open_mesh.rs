@@ -9,14 +9,21 @@ use crate::lattice::Lattice;
 use crate::mesh::{Topology, TriMesh};
 use crate::run::RunSettings;
 
+/// What [`OpenMesh::close`] may do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Change {
+    /// Keep triangles, or leave more of them out.
+    Both,
+    /// Leave more of them out.
+    Drop,
+}
+
 /// Section and shell: the triangles of a contour that are kept.
 #[derive(Debug)]
 pub(super) struct OpenMesh {
     /// The whole contour.
     pub mesh: TriMesh,
     pub topology: Topology,
-    /// Per triangle.
-    pub parts: Vec<Part>,
     /// Per triangle whether it is in the result.
     pub kept: Vec<bool>,
 }
@@ -36,7 +43,7 @@ impl OpenMesh {
             per_triangle.flat_map(|(&size, &part)| std::iter::repeat_n(part, usize::from(size))).collect();
         let topology = run.install(|| Topology::new(&mesh));
         let kept: Vec<bool> = parts.iter().map(|&part| part != Part::Lid).collect();
-        let mut open = OpenMesh { mesh, topology, parts, kept };
+        let mut open = OpenMesh { mesh, topology, kept };
         let at_rim = (0..open.mesh.vertices.len() as u32).filter(|&v| open.is_at_rim(v)).collect();
         open.open_pinches(at_rim);
         Ok(open)
@@ -82,6 +89,60 @@ impl OpenMesh {
     fn is_rim(&self, t: u32, side: Side) -> bool {
         self.kept[t as usize]
             && self.topology.around_edge(t, side).nth(1).is_none_or(|(other, _)| !self.kept[other as usize])
+    }
+
+    /// Closes the holes that these rims are around, and drops the islands that they bound: those parts of the contour,
+    /// left out or not, that have no other rim. Says whether there were any.
+    pub fn close(&mut self, rims: &[Vec<u32>], wanted: impl Fn(usize) -> bool, change: Change) -> bool {
+        let mut is_wanted = vec![true; self.mesh.vertices.len()];
+        for (_, rim) in rims.iter().enumerate().filter(|&(n, _)| !wanted(n)) {
+            rim.iter().for_each(|&v| is_wanted[v as usize] = false);
+        }
+        let mut seen = vec![false; self.kept.len()];
+        let mut flips = Vec::new();
+        for (_, rim) in rims.iter().enumerate().filter(|&(n, _)| wanted(n)) {
+            for &start in rim.iter().flat_map(|&v| self.topology.around_vertex(v)) {
+                if seen[start as usize] || change == Change::Drop && !self.kept[start as usize] {
+                    continue;
+                }
+                let (part, is_whole) = self.part_of(start, &mut seen, &is_wanted);
+                if is_whole {
+                    flips.extend(part);
+                }
+            }
+        }
+        // Holes first: an island beside one is no island then.
+        if flips.iter().any(|&t| !self.kept[t as usize]) {
+            flips.retain(|&t| !self.kept[t as usize]);
+        }
+        let found = !flips.is_empty();
+        for t in flips {
+            self.kept[t as usize] = !self.kept[t as usize];
+        }
+        found
+    }
+
+    /// The triangles joined to one by edges that are kept, or not, as it is; whether all of its vertices at rims are
+    /// wanted ones.
+    fn part_of(&self, start: u32, seen: &mut [bool], is_wanted: &[bool]) -> (Vec<u32>, bool) {
+        let kept = self.kept[start as usize];
+        let (mut part, mut is_whole, mut next) = (Vec::new(), true, vec![start]);
+        seen[start as usize] = true;
+        while let Some(t) = next.pop() {
+            part.push(t);
+            let corners = self.mesh.triangles[t as usize];
+            is_whole &= corners.into_iter().all(|v| is_wanted[v as usize]);
+            for side in Side::ALL {
+                for (other, _) in self.topology.around_edge(t, side).skip(1) {
+                    if self.kept[other as usize] == kept
+                        && !std::mem::replace(&mut seen[other as usize], true)
+                    {
+                        next.push(other);
+                    }
+                }
+            }
+        }
+        (part, is_whole)
     }
 
     /// The vertices of each rim, in the direction in which the kept triangles run through its edges.

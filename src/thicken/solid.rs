@@ -37,6 +37,8 @@ pub(super) struct Solid<'a> {
     pub thickness: f64,
     /// Depth of the lid, in model units.
     pub lid: f64,
+    /// Radius of the rods below vertices in which parts of S touch, in model units.
+    pub rod: f64,
     /// The triangles near each point.
     pub lists: Option<&'a CandidateLists>,
 }
@@ -56,8 +58,10 @@ impl Solid<'_> {
 
     /// Where a point is whose closest point is known.
     #[inline]
-    pub fn place(&self, sample: &Sample) -> Place {
-        if self.boundary.holds(self.distance.mesh(), sample.triangle, sample.feature) {
+    pub fn place(&self, p: DVec3, sample: &Sample) -> Place {
+        if self.boundary.holds(self.distance.mesh(), sample.triangle, sample.feature)
+            && !self.bridges(sample, p)
+        {
             Place::Beside
         } else if sample.distance > -self.lid {
             Place::Above
@@ -66,5 +70,20 @@ impl Solid<'_> {
         } else {
             Place::Inside
         }
+    }
+
+    /// Whether `p`, beside S, is below a vertex in which parts of S touch. They are joined by a rod there: the solid is
+    /// thickened around that vertex, or it would hang together by an edge.
+    fn bridges(&self, sample: &Sample, p: DVec3) -> bool {
+        if self.boundary.touching.is_empty() || sample.distance > 0.0 {
+            return false;
+        }
+        let mesh = self.distance.mesh();
+        self.boundary.touching.iter().any(|&v| {
+            let across = p - DVec3::from(mesh.vertices[v as usize]);
+            let normal = self.boundary.touching_normal(v);
+            let depth = across.dot(normal);
+            depth < 0.0 && (across - normal * depth).length() <= self.rod
+        })
     }
 }

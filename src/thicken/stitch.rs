@@ -1,8 +1,8 @@
 //! Joins the boundary of S to the rims of the section.
 
 use super::boundary::Boundary;
-use super::curve::Curve;
-use super::open_mesh::OpenMesh;
+use super::curve::{Curve, CurvePoint};
+use super::open_mesh::{Change, OpenMesh};
 use super::ribbon::{Ribbon, Side, Step};
 use super::unsuitable::{Blocked, Obstacle};
 use crate::geom::predicates::projection_axis;
@@ -12,7 +12,7 @@ use crate::run::{Cancelled, RunSettings};
 use crate::verify::boxes::BoxTree;
 use glam::DVec3;
 use rayon::prelude::*;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// How a rim may lie to the boundary.
 #[derive(Clone, Copy, Debug)]
@@ -31,6 +31,75 @@ const TRIES: usize = 8;
 /// high.
 const CUTS: usize = 8;
 
+/// A rim, seen from the boundary.
+struct RimPlace {
+    points: Vec<DVec3>,
+    /// Per vertex the closest point of one and the same loop.
+    closest: Vec<CurvePoint>,
+    /// How often the rim runs around that loop, against the direction of the section's triangles; `None` when it is
+    /// not near it.
+    turns: Option<i32>,
+}
+
+impl RimPlace {
+    fn new(curve: &Curve, mesh: &TriMesh, rim: &[u32], reach: Reach) -> RimPlace {
+        let points: Vec<DVec3> = rim.iter().map(|&v| DVec3::from(mesh.vertices[v as usize])).collect();
+        let mut closest: Vec<_> = points.par_iter().with_min_len(64).map(|&p| curve.closest(p)).collect();
+        // Where loops are near to each other or touch, a rim belongs to the one that most of it is near to.
+        let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
+        closest.iter().for_each(|c| *counts.entry(c.number).or_default() += 1);
+        let number = counts.iter().max_by_key(|(_, count)| **count).map_or(0, |(&number, _)| number);
+        for (c, &p) in closest.iter_mut().zip(&points).filter(|(c, _)| c.number != number) {
+            *c = curve.closest_of(p, number, None).unwrap_or(*c);
+        }
+        // And to the part of the loop that it has come along.
+        let first = (0..rim.len()).min_by(|&a, &b| closest[a].distance.total_cmp(&closest[b].distance));
+        let first = first.unwrap_or_default();
+        let whole = curve.whole(number);
+        let mut turned = 0.0;
+        for j in 1..=rim.len() {
+            let (before, at) = ((first + j - 1) % rim.len(), (first + j) % rim.len());
+            let most = 2.0 * points[before].distance(points[at]) + 2.0 * reach.across;
+            let step = |arc: f64| {
+                let step = arc - closest[before].arc;
+                step - whole * (step / whole).round()
+            };
+            if step(closest[at].arc).abs() > most
+                && let Some(near) = curve.closest_of(points[at], number, Some((closest[before].arc, most)))
+                && near.distance <= 2.0 * reach.across
+                && j < rim.len()
+            {
+                closest[at] = near;
+            }
+            let step = closest[at].arc - closest[before].arc;
+            turned += step - whole * (step / whole).round();
+        }
+        let is_near = closest.iter().all(|c| c.distance <= 2.0 * reach.across);
+        let turns = is_near.then_some(-(turned / whole).round() as i32);
+        RimPlace { points, closest, turns }
+    }
+}
+
+/// Rims that run around no boundary loop are those of holes and islands where the lattice is too coarse for what is there: both
+/// are undone.
+fn close_strays(patch: &TriMesh, boundary: &Boundary, open: &mut OpenMesh, reach: Reach, change: Change) {
+    let curve = (!boundary.is_empty()).then(|| Curve::new(patch, boundary));
+    for _ in 0..CUTS {
+        let rims = open.rims();
+        let is_stray: Vec<bool> = rims
+            .iter()
+            .map(|rim| {
+                curve.as_ref().is_none_or(|curve| {
+                    matches!(RimPlace::new(curve, &open.mesh, rim, reach).turns, None | Some(0))
+                })
+            })
+            .collect();
+        if !is_stray.contains(&true) || !open.close(&rims, |n| is_stray[n], change) {
+            break;
+        }
+    }
+}
+
 /// Pairs each rim with a boundary loop. Vertices of the rims are numbered on from `first`.
 fn ribbons(
     patch: &TriMesh,
@@ -39,20 +108,22 @@ fn ribbons(
     first: u32,
     reach: Reach,
 ) -> Result<Vec<Ribbon>, Blocked> {
+    let rims = open.rims();
+    if boundary.is_empty() {
+        let stray = rims.first().map(|rim| open.mesh.vertices[rim[0] as usize]);
+        return stray.map_or(Ok(Vec::new()), |at| Err(Blocked { obstacle: Obstacle::Sheets, at }));
+    }
     let curve = Curve::new(patch, boundary);
     let mut rim_of: Vec<Option<usize>> = vec![None; boundary.loops.len()];
-    let rims = open.rims();
     let mut ribbons = Vec::with_capacity(rims.len());
     for (number, rim) in rims.iter().enumerate() {
-        let points: Vec<DVec3> = rim.iter().map(|&v| DVec3::from(open.mesh.vertices[v as usize])).collect();
-        let closest: Vec<_> = points.par_iter().with_min_len(64).map(|&p| curve.closest(p)).collect();
-        if let Some(far) = closest.iter().position(|c| c.distance > reach.across) {
-            return Err(Blocked { obstacle: Obstacle::Sheets, at: points[far].to_array() });
-        }
-        if let Some(other) = closest.iter().position(|c| c.number != closest[0].number) {
-            return Err(Blocked { obstacle: Obstacle::Loops, at: points[other].to_array() });
-        }
+        let RimPlace { points, closest, turns } = RimPlace::new(&curve, &open.mesh, rim, reach);
         let at = points[0].to_array();
+        match turns {
+            Some(1) => {}
+            None => return Err(Blocked { obstacle: Obstacle::Sheets, at }),
+            Some(_) => return Err(Blocked { obstacle: Obstacle::Loops, at }),
+        }
         let loops = closest[0].number as usize;
         if rim_of[loops].replace(number).is_some() {
             return Err(Blocked { obstacle: Obstacle::Loops, at });
@@ -90,9 +161,6 @@ fn ribbons(
             arc += step;
             rim_arcs.push(arc);
         }
-        if ((arc - rim_arcs[0]) / whole - 1.0).abs() > 0.01 {
-            return Err(Blocked { obstacle: Obstacle::Loops, at });
-        }
         let rim_side = Side {
             vertices: order.iter().map(|&j| first + rim[j]).collect(),
             points: order.iter().map(|&j| points[j]).collect(),
@@ -120,6 +188,7 @@ pub(super) fn stitch(
     reach: Reach,
     run: &RunSettings,
 ) -> Result<Result<TriMesh, Blocked>, Cancelled> {
+    close_strays(patch, boundary, &mut open, reach, Change::Both);
     let first = patch.vertices.len() as u32;
     let mut mesh = patch.clone();
     mesh.vertices.extend(&open.mesh.vertices);
@@ -143,7 +212,8 @@ pub(super) fn stitch(
         match around.fit(&mut ribbons, run)? {
             Ok(strip) => break strip,
             Err(conflicts) if cuts == CUTS || conflicts.is_empty() => {
-                let at = conflicts.first().map_or(ribbons[0].boundary.points[0].to_array(), |c| c.at);
+                let at =
+                    conflicts.first().map_or_else(|| patch.vertices[boundary.loops[0][0] as usize], |c| c.at);
                 return Ok(Err(Blocked { obstacle: Obstacle::Ribbon, at }));
             }
             Err(conflicts) => {
@@ -156,6 +226,7 @@ pub(super) fn stitch(
                     }
                 }
                 open.drop(dropped);
+                close_strays(patch, boundary, &mut open, reach, Change::Drop);
                 cuts += 1;
             }
         }
