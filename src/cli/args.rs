@@ -239,7 +239,11 @@ pub(super) struct ThickenArguments {
     pub input: PathBuf,
     /// Thickness of the solid in model units, or in percent of the patch's diagonal
     #[arg(long, short, value_name = "T", value_parser = length, allow_hyphen_values = true)]
-    pub thickness: Length,
+    #[arg(required_unless_present = "thickness_map")]
+    pub thickness: Option<Length>,
+    /// A text file with the thickness at each vertex of PATCH, in the order of the file, in model units
+    #[arg(long, value_name = "FILE", conflicts_with = "thickness")]
+    pub thickness_map: Option<PathBuf>,
     /// The side of the patch on which the solid lies: behind it, or where its normals point
     #[arg(long, value_enum, default_value_t = PatchSide::Inner)]
     pub side: PatchSide,
@@ -260,6 +264,18 @@ pub(super) struct ThickenArguments {
     /// Write PLY with 64-bit coordinates
     #[arg(long)]
     pub f64: bool,
+    /// Write the solid as an OpenVDB level set, too
+    #[arg(long, value_name = "FILE.vdb")]
+    pub vdb: Option<PathBuf>,
+    /// Compression of the .vdb file
+    #[arg(long, value_enum, default_value_t = Codec::Blosc, requires = "vdb")]
+    pub vdb_compression: Codec,
+    /// Store the .vdb file's distances as 16-bit floats
+    #[arg(long, requires = "vdb")]
+    pub half: bool,
+    /// The model's unit, written into the .vdb file's metadata (mm, cm, in, ...)
+    #[arg(long, requires = "vdb", value_name = "UNIT")]
+    pub unit: Option<String>,
     /// Write settings, times and counts as JSON
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,

@@ -19,6 +19,7 @@ mod resources;
 mod session;
 mod statistics;
 mod thicken;
+mod thickness_map;
 mod verify;
 
 use args::{Arguments, Command};

@@ -17,7 +17,7 @@ use std::path::Path;
 
 /// Half-width in voxels of a band that other programs will read: OpenVDB's own default, and the least that
 /// its level-set checks accept.
-const STORED_HALF_WIDTH: f64 = 3.0;
+pub(super) const STORED_HALF_WIDTH: f64 = 3.0;
 
 /// The usual resolution: fine enough to see the features, a second or so of work.
 pub(super) const DEFAULT_RESOLUTION: u32 = 256;
@@ -47,7 +47,9 @@ pub(super) fn run(arguments: &OffsetArguments, session: &Session) -> Result<(), 
     let (_, write) = session.phase(Phase::Write, || match (&arguments.vdb, &result.band) {
         (Some(path), Some(band)) => {
             let tile = arguments.tile.map(|tile| identity(tile, &loaded.mesh, &settings));
-            save_vdb(band, path, tile, arguments, result.statistics.distance, session)
+            let stored = vdb_options(arguments.vdb_compression, arguments.half, arguments.unit.as_ref());
+            let options = VdbOptions { distance: Some(result.statistics.distance), ..stored };
+            save_vdb(band, path, tile, &options, session)
         }
         _ => Ok(()),
     })?;
@@ -98,11 +100,7 @@ fn check_outputs(arguments: &OffsetArguments) -> Result<(), Failure> {
         check_mesh_output(output, arguments.f64)?;
     }
     check_pieces(arguments)?;
-    if let Some(path) = &arguments.vdb
-        && !is_vdb(path)
-    {
-        return Err(Failure::usage(format!("{}: --vdb needs a file name that ends in .vdb", path.display())));
-    }
+    arguments.vdb.as_deref().map_or(Ok(()), check_vdb_output)?;
     let all = [&arguments.output, &arguments.vdb, &arguments.stats];
     outputs::check(all.into_iter().flatten().map(|p| p.as_path()))
 }
@@ -200,30 +198,41 @@ pub(super) fn save_mesh(
     })
 }
 
-fn save_vdb(
-    band: &Band,
-    output: &Path,
-    tile: Option<Tile>,
-    arguments: &OffsetArguments,
-    distance: f64,
-    session: &Session,
-) -> Result<(), Failure> {
-    session.run.check()?;
-    let options = VdbOptions {
-        compression: match arguments.vdb_compression {
+/// How a band is stored.
+pub(super) fn vdb_options(codec: Codec, half: bool, unit: Option<&String>) -> VdbOptions {
+    VdbOptions {
+        compression: match codec {
             Codec::Blosc => Compression::Blosc,
             Codec::Zip => Compression::Zip,
             Codec::None => Compression::None,
         },
-        precision: if arguments.half { VdbPrecision::Half } else { VdbPrecision::Full },
-        distance: Some(distance),
-        unit: arguments.unit.clone(),
+        precision: if half { VdbPrecision::Half } else { VdbPrecision::Full },
+        unit: unit.cloned(),
         ..VdbOptions::default()
-    };
+    }
+}
+
+/// Checks that a level set's file is named as one.
+pub(super) fn check_vdb_output(path: &Path) -> Result<(), Failure> {
+    if is_vdb(path) {
+        return Ok(());
+    }
+    Err(Failure::usage(format!("{}: --vdb needs a file name that ends in .vdb", path.display())))
+}
+
+/// Writes a band to where it will be put in place from.
+pub(super) fn save_vdb(
+    band: &Band,
+    output: &Path,
+    tile: Option<Tile>,
+    options: &VdbOptions,
+    session: &Session,
+) -> Result<(), Failure> {
+    session.run.check()?;
     let staged = session.staging.stage(output)?;
     let written = match tile {
-        Some(tile) => vdb::write_tile(&staged, band, tile, &options),
-        None => vdb::write(&staged, &band.surface, band.closest.as_ref(), &options),
+        Some(tile) => vdb::write_tile(&staged, band, tile, options),
+        None => vdb::write(&staged, &band.surface, band.closest.as_ref(), options),
     };
     written.map_err(|error| match error {
         VdbError::Write { reason, .. } => VdbError::Write { path: output.into(), reason }.into(),

@@ -3,25 +3,34 @@
 use super::args::ThickenArguments;
 use super::exit::{Failure, of_io};
 use super::numbers::{counted, grouped, short};
-use super::offset::{check_mesh_output, coordinates, load_mesh, precision, save_mesh};
+use super::offset::{
+    STORED_HALF_WIDTH, check_mesh_output, check_vdb_output, coordinates, load_mesh, precision, save_mesh,
+    save_vdb, vdb_options,
+};
 use super::outputs;
 use super::resources::peak_rss;
 use super::session::{Session, Verbosity};
 use super::statistics::MeshFacts;
+use super::thickness_map;
 use exocarp::mesh::{CleanReport, Topology};
-use exocarp::offset::VoxelSize;
+use exocarp::offset::{Length, OffsetSettings, VoxelSize, offset_band};
 use exocarp::run::Phase;
 use exocarp::thicken::{ThickenResult, ThickenSettings, ThickenStatistics, ThickenTimes, thicken};
+use exocarp::vdb::Band;
 use serde::Serialize;
 use std::path::Path;
 
 pub(super) fn run(arguments: &ThickenArguments, session: &Session) -> Result<(), Failure> {
     check_mesh_output(&arguments.output, arguments.f64)?;
-    let written = std::iter::once(&arguments.output).chain(&arguments.stats);
+    arguments.vdb.as_deref().map_or(Ok(()), check_vdb_output)?;
+    let written = std::iter::once(&arguments.output).chain(&arguments.vdb).chain(&arguments.stats);
     outputs::check(written.map(|p| p.as_path()))?;
-    let settings = settings(arguments)?;
+    let mut settings = settings(arguments)?;
 
     let (loaded, loading) = load_mesh(&arguments.input, session)?;
+    if let Some(path) = &arguments.thickness_map {
+        settings.map = Some(thickness_map::load(path, &arguments.input, &loaded.mesh)?);
+    }
     let surface = CleanReport { welded_vertices: 0, unreferenced_vertices: 0, ..loaded.report };
     if !surface.is_clean() {
         session.warn(&format!("{}: {surface}", arguments.input.display()));
@@ -36,7 +45,8 @@ pub(super) fn run(arguments: &ThickenArguments, session: &Session) -> Result<(),
         ));
     }
     let (_, write) = session.phase(Phase::Write, || {
-        save_mesh(&result.mesh, &arguments.output, coordinates(arguments.f64), session)
+        save_mesh(&result.mesh, &arguments.output, coordinates(arguments.f64), session)?;
+        arguments.vdb.as_deref().map_or(Ok(()), |path| save_level_set(&result, path, arguments, session))
     })?;
     let phases = Phases { load: loading.load, clean: loading.clean, engine: statistics.times, write };
     if let Some(path) = &arguments.stats {
@@ -49,19 +59,42 @@ pub(super) fn run(arguments: &ThickenArguments, session: &Session) -> Result<(),
     Ok(())
 }
 
+/// Writes the solid as a level set: the signed distance from its boundary.
+fn save_level_set(
+    result: &ThickenResult,
+    path: &Path,
+    arguments: &ThickenArguments,
+    session: &Session,
+) -> Result<(), Failure> {
+    let settings = OffsetSettings {
+        distance: Length::Units(0.0),
+        voxel: VoxelSize::Units(result.statistics.voxel),
+        half_width: STORED_HALF_WIDTH,
+        keep_band: true,
+        max_memory: session.max_memory,
+        ..OffsetSettings::default()
+    };
+    let solid = offset_band(&result.mesh, &settings, &session.run)?;
+    let options = vdb_options(arguments.vdb_compression, arguments.half, arguments.unit.as_ref());
+    // Closest triangles would be those of the solid, which is another file.
+    let band = solid.band.map(|band| Band { closest: None, ..band });
+    band.map_or(Ok(()), |band| save_vdb(&band, path, None, &options, session))
+}
+
 fn settings(arguments: &ThickenArguments) -> Result<ThickenSettings, Failure> {
     let voxel = match (arguments.voxel, arguments.resolution) {
         (Some(h), _) => Some(VoxelSize::Units(h)),
         (None, Some(n)) => Some(VoxelSize::Resolution(n)),
         (None, None) => None,
     };
+    let defaults = ThickenSettings::default();
     let settings = ThickenSettings {
-        thickness: arguments.thickness,
+        thickness: arguments.thickness.unwrap_or(defaults.thickness),
         side: arguments.side.side(),
         voxel,
         rounds: arguments.rounds,
         precision: precision(&arguments.output, arguments.f64)?,
-        ..ThickenSettings::default()
+        ..defaults
     };
     settings.validate().map_err(exocarp::error::Error::from)?;
     Ok(settings)
@@ -139,7 +172,8 @@ fn save_statistics(
 }
 
 fn tell(arguments: &ThickenArguments, result: &ThickenResult, phases: &Phases, session: &Session) {
-    let more: String = arguments.stats.iter().map(|path| format!("; {}", path.display())).collect();
+    let more: String =
+        arguments.vdb.iter().chain(&arguments.stats).map(|path| format!("; {}", path.display())).collect();
     session.tell(&format!(
         "{}: {}, {}, {:.2} s{more}",
         arguments.output.display(),

@@ -1,12 +1,14 @@
 //! The exact tests of what was not made by the contour alone.
 
-use super::unsuitable::{Blocked, Obstacle, PatchError};
+use super::unsuitable::PatchError;
 use crate::geom::predicates::projection_axis;
 use crate::geom::triangle_pair::meeting_point;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};
 use crate::verify::boxes::BoxTree;
 use rayon::prelude::*;
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
 
 /// Checks that the patch, as it will be written, has area everywhere and does not intersect itself.
 pub(super) fn check_patch(patch: &TriMesh, run: &RunSettings) -> Result<Result<(), PatchError>, Cancelled> {
@@ -19,15 +21,29 @@ pub(super) fn check_patch(patch: &TriMesh, run: &RunSettings) -> Result<Result<(
     Ok(found.map_or(Ok(()), |(triangles, at)| Err(PatchError::Intersects { triangles, at })))
 }
 
-/// Checks that none of the first `patch` triangles meets a later one.
-pub(super) fn check_apart(
+/// The triangles from number `patch` on that are `there` and meet one of those before, ascending, each with a point of
+/// both.
+pub(super) fn meeting_patch(
     mesh: &TriMesh,
     tree: &BoxTree,
     patch: u32,
+    there: impl Fn(u32) -> bool + Sync,
     run: &RunSettings,
-) -> Result<Result<(), Blocked>, Cancelled> {
-    let found = first_pair(mesh, tree, |a, b| (a < patch) != (b < patch), run)?;
-    Ok(found.map_or(Ok(()), |(_, at)| Err(Blocked { obstacle: Obstacle::Shell, at })))
+) -> Result<BTreeMap<u32, [f64; 3]>, Cancelled> {
+    let found = tree.pairs(run, Vec::new, |found: &mut Vec<(u32, [f64; 3])>, a, b| {
+        let later = a.max(b);
+        if (a < patch) == (b < patch) || !there(later) {
+            return;
+        }
+        let (va, vb) = (mesh.triangles[a as usize], mesh.triangles[b as usize]);
+        if let Some(at) = meeting_point(va, mesh.corners(a as usize), vb, mesh.corners(b as usize)) {
+            found.push((later, at));
+        }
+    })?;
+    let mut all: Vec<_> = found.into_iter().flatten().collect();
+    // The order of tasks is not that of the triangles.
+    all.sort_by(|a, b| b.partial_cmp(a).unwrap_or(Ordering::Equal));
+    Ok(all.into_iter().collect())
 }
 
 /// The first pair, by number, of triangles that meet, of those that `wanted` wants.

@@ -130,15 +130,16 @@ impl Edge<'_> {
         let solid = self.solid;
         let near = ON_FACE * self.voxel;
         for step in 0.. {
-            let depth = match solid.place(self.at(outside.t), &outside.sample) {
+            let place = solid.place(self.at(outside.t), &outside.sample);
+            let part = if place == Place::Above { Part::Lid } else { Part::Shell };
+            let depth = match place {
                 Place::Above => Some(-solid.lid),
-                Place::Below => Some(-solid.thickness),
+                Place::Below => Some(-solid.thickness_at(&outside.sample)),
                 Place::Beside | Place::Inside => None,
             };
             if let Some(depth) = depth
                 && (outside.sample.distance - depth).abs() <= near
             {
-                let part = if depth == -solid.lid { Part::Lid } else { Part::Shell };
                 return (self.on_face(outside, part), part);
             }
             let width = outside.t - inside.t;
@@ -160,7 +161,6 @@ impl Edge<'_> {
                 if let Some(depth) = depth
                     && (middle.sample.distance - depth).abs() <= near
                 {
-                    let part = if depth == -solid.lid { Part::Lid } else { Part::Shell };
                     return (self.on_face(middle, part), part);
                 }
                 inside = middle;
@@ -187,6 +187,11 @@ impl Edge<'_> {
     /// Where the closest point jumps from one part of S to another.
     fn at_jump(&self, inside: End, outside: End) -> (Crossing, Part) {
         let distance = self.solid.distance;
+        if let Some((depth, normal)) = self.solid.rod(self.at(outside.t))
+            && (depth - self.solid.lid).abs() <= self.voxel * 1e-3
+        {
+            return (self.crossing(&outside, normal), Part::Lid);
+        }
         if self.solid.place(self.at(outside.t), &outside.sample) == Place::Beside {
             let wall = self.solid.boundary.wall(distance.mesh(), &outside.sample);
             // Where the boundary of another part of S is as near, the middle between both is the wall.

@@ -10,6 +10,7 @@
 
 mod boundary;
 mod check;
+mod closed;
 mod crossings;
 mod curve;
 mod nodes;
@@ -31,7 +32,7 @@ use crate::distance::SignedDistance;
 use crate::error::Error;
 use crate::lattice::Lattice;
 use crate::mesh::{Topology, TriMesh};
-use crate::run::RunSettings;
+use crate::run::{Phase, RunSettings};
 use boundary::Boundary;
 use nodes::Nodes;
 use open_mesh::OpenMesh;
@@ -82,7 +83,13 @@ pub fn thicken(
     let topology = run.install(|| Topology::new(&patch));
     let boundary = Boundary::new(&patch, &topology).map_err(ThickenError::from)?;
     run.install(|| check::check_patch(&patch, run))?.map_err(ThickenError::from)?;
-    let distance = run.install(|| SignedDistance::new(&patch, &topology));
+    if boundary.is_empty() && settings.map.is_none() {
+        return closed::shell(patch, &resolved, settings, run);
+    }
+    let distance = {
+        let _phase = run.phase(Phase::Hierarchy, 0);
+        run.install(|| SignedDistance::new(&patch, &topology))
+    };
     run.check()?;
     let mut times = ThickenTimes { hierarchy: started.elapsed().as_secs_f64(), ..ThickenTimes::default() };
     let work = Work { patch: &patch, boundary: &boundary, distance: &distance, settings, run };
@@ -142,7 +149,9 @@ impl Work<'_> {
         let started = Instant::now();
         let nodes = Nodes::new(distance, lattice, thickness + BEYOND * voxel, run)?;
         let lid = LID * voxel;
-        let solid = Solid { distance, boundary, thickness, lid, rod: ROD * voxel, lists: Some(&nodes.lists) };
+        let map = settings.map.as_deref();
+        let solid =
+            Solid { distance, boundary, thickness, map, lid, rod: ROD * voxel, lists: Some(&nodes.lists) };
         let (signs, triangles) = nodes.classify(&solid, lattice, run);
         times.nodes += started.elapsed().as_secs_f64();
 
@@ -152,7 +161,7 @@ impl Work<'_> {
         times.faces += started.elapsed().as_secs_f64();
 
         let started = Instant::now();
-        let reach = Reach { across: 4.0 * voxel, along: 4.0 * voxel };
+        let reach = Reach { across: 1.5 * thickness, along: 4.0 * voxel };
         let stitched = run.install(|| stitch::stitch(patch, boundary, open, reach, run))?;
         times.boundary += started.elapsed().as_secs_f64();
         Ok(stitched)

@@ -8,6 +8,7 @@ use crate::geom::triangle::Side;
 use crate::lattice::Lattice;
 use crate::mesh::{Topology, TriMesh};
 use crate::run::RunSettings;
+use std::collections::BTreeSet;
 
 /// What [`OpenMesh::close`] may do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,13 +50,23 @@ impl OpenMesh {
         Ok(open)
     }
 
-    /// Leaves out some more triangles.
-    pub fn drop(&mut self, triangles: impl IntoIterator<Item = usize>) {
+    /// Leaves out some more triangles, and `rings` of those around them.
+    pub fn drop_around(&mut self, triangles: impl IntoIterator<Item = usize>, rings: usize) {
+        let mut front: Vec<usize> = triangles.into_iter().collect();
         let mut at_rim = Vec::new();
-        for t in triangles {
-            if std::mem::replace(&mut self.kept[t], false) {
-                at_rim.extend(self.mesh.triangles[t]);
+        let mut seen: BTreeSet<usize> = front.iter().copied().collect();
+        for ring in 0..=rings {
+            for &t in &front {
+                if std::mem::replace(&mut self.kept[t], false) {
+                    at_rim.extend(self.mesh.triangles[t]);
+                }
             }
+            if ring == rings {
+                break;
+            }
+            let vertices = front.iter().flat_map(|&t| self.mesh.triangles[t]);
+            let around = vertices.flat_map(|v| self.topology.around_vertex(v)).map(|&t| t as usize);
+            front = around.filter(|&t| self.kept[t] && seen.insert(t)).collect();
         }
         self.open_pinches(at_rim);
     }

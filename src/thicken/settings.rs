@@ -22,6 +22,9 @@ pub enum Side {
 pub struct ThickenSettings {
     /// Thickness r of the solid, positive.
     pub thickness: Length,
+    /// Instead of that, the thickness at each vertex of the patch, in model units, all positive. It is interpolated over the
+    /// triangles, and each point of the solid is as deep as the thickness at its closest point allows.
+    pub map: Option<Vec<f64>>,
     /// The side of the patch on which it lies.
     pub side: Side,
     /// Voxel size, less than r/2 (\[WC13\] Remark 1); `None` for r/4.
@@ -39,6 +42,7 @@ impl Default for ThickenSettings {
     fn default() -> Self {
         ThickenSettings {
             thickness: Length::OfDiagonal(0.02),
+            map: None,
             side: Side::Inner,
             voxel: None,
             halvings: 3,
@@ -51,6 +55,7 @@ impl Default for ThickenSettings {
 /// The settings in model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Resolved {
+    /// The largest thickness.
     pub thickness: f64,
     pub voxel: f64,
 }
@@ -80,19 +85,28 @@ impl ThickenSettings {
     pub(super) fn resolve(&self, mesh: &TriMesh) -> Result<Resolved, ThickenError> {
         self.validate()?;
         let bounds = Aabb::around(mesh.vertices.iter().map(|&v| DVec3::from(v)));
-        let thickness = match self.thickness {
-            Length::Units(r) => r,
-            Length::OfDiagonal(fraction) => fraction * bounds.diagonal(),
+        let [thinnest, thickness] = match (&self.map, self.thickness) {
+            (Some(map), _) => {
+                if map.len() != mesh.vertices.len() {
+                    return Err(ThickenError::Map { values: map.len(), vertices: mesh.vertices.len() });
+                }
+                map.iter().try_for_each(|&r| check_thickness(r))?;
+                let [least, most] =
+                    [f64::min, f64::max].map(|f| map.iter().copied().reduce(f).unwrap_or(0.0));
+                [least, most]
+            }
+            (None, Length::Units(r)) => [r; 2],
+            (None, Length::OfDiagonal(fraction)) => [fraction * bounds.diagonal(); 2],
         };
-        check_thickness(thickness)?;
+        check_thickness(thinnest)?;
         let voxel = match self.voxel {
-            None => thickness / VOXELS_PER_THICKNESS,
+            None => thinnest / VOXELS_PER_THICKNESS,
             Some(VoxelSize::Units(h)) => h,
             Some(VoxelSize::Resolution(n)) => (bounds.size().max_element() + 2.0 * thickness) / f64::from(n),
         };
         check_voxel(voxel)?;
-        if voxel >= 0.5 * thickness {
-            return Err(ThickenError::TooCoarse { voxel, thickness });
+        if voxel >= 0.5 * thinnest {
+            return Err(ThickenError::TooCoarse { voxel, thickness: thinnest });
         }
         let farthest = bounds.lo.abs().max(bounds.hi.abs()).max_element() + 2.0 * thickness;
         if farthest / voxel > LARGEST_INDEX {

@@ -35,6 +35,8 @@ pub(super) struct Solid<'a> {
     pub boundary: &'a Boundary,
     /// Thickness r, in model units.
     pub thickness: f64,
+    /// Instead of that, the thickness at each vertex of S.
+    pub map: Option<&'a [f64]>,
     /// Depth of the lid, in model units.
     pub lid: f64,
     /// Radius of the rods below vertices in which parts of S touch, in model units.
@@ -56,34 +58,49 @@ impl Solid<'_> {
         }
     }
 
+    /// The thickness below a point of S.
+    #[inline]
+    pub fn thickness_at(&self, sample: &Sample) -> f64 {
+        let Some(map) = self.map else { return self.thickness };
+        let mesh = self.distance.mesh();
+        let [a, b, c] = mesh.corners(sample.triangle as usize).map(DVec3::from);
+        let values = mesh.triangles[sample.triangle as usize].map(|v| map[v as usize]);
+        let normal = (b - a).cross(c - a);
+        let part = |p: DVec3, q: DVec3| (p - sample.closest).cross(q - sample.closest).dot(normal).max(0.0);
+        let parts = [part(b, c), part(c, a), part(a, b)];
+        let whole: f64 = parts.iter().sum();
+        let mean = || parts.iter().zip(values).map(|(part, value)| part * value).sum::<f64>() / whole;
+        if whole > 0.0 { mean() } else { values[0] }
+    }
+
     /// Where a point is whose closest point is known.
     #[inline]
     pub fn place(&self, p: DVec3, sample: &Sample) -> Place {
-        if self.boundary.holds(self.distance.mesh(), sample.triangle, sample.feature)
-            && !self.bridges(sample, p)
-        {
-            Place::Beside
-        } else if sample.distance > -self.lid {
+        let mut depth = -sample.distance;
+        if self.boundary.holds(self.distance.mesh(), sample.triangle, sample.feature) {
+            match self.rod(p) {
+                Some((at, _)) => depth = depth.copysign(at).min(at),
+                None => return Place::Beside,
+            }
+        }
+        if depth < self.lid {
             Place::Above
-        } else if sample.distance <= -self.thickness {
+        } else if depth >= self.thickness_at(sample) {
             Place::Below
         } else {
             Place::Inside
         }
     }
 
-    /// Whether `p`, beside S, is below a vertex in which parts of S touch. They are joined by a rod there: the solid is
-    /// thickened around that vertex, or it would hang together by an edge.
-    fn bridges(&self, sample: &Sample, p: DVec3) -> bool {
-        if self.boundary.touching.is_empty() || sample.distance > 0.0 {
-            return false;
-        }
-        let mesh = self.distance.mesh();
-        self.boundary.touching.iter().any(|&v| {
-            let across = p - DVec3::from(mesh.vertices[v as usize]);
+    /// The depth of a point in the rod below a vertex in which parts of S touch, and the normal there. The solid is thickened
+    /// around such a vertex, or the parts would hang together by less than a voxel.
+    pub fn rod(&self, p: DVec3) -> Option<(f64, DVec3)> {
+        self.boundary.touching.iter().find_map(|&v| {
+            let across = p - DVec3::from(self.distance.mesh().vertices[v as usize]);
             let normal = self.boundary.touching_normal(v);
-            let depth = across.dot(normal);
-            depth < 0.0 && (across - normal * depth).length() <= self.rod
+            let depth = -across.dot(normal);
+            let is_near = depth.abs() <= self.thickness && (across + normal * depth).length() <= self.rod;
+            is_near.then_some((depth, normal))
         })
     }
 }

@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// How a rim may lie to the boundary.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
-    /// A rim's vertex is at most this far from the boundary, in model units.
+    /// A rim's vertex is at most this far from the boundary, in model units: as far as the section reaches.
     pub across: f64,
     /// A rung leads at most this far along the boundary beyond the next vertices.
     pub along: f64,
@@ -25,11 +25,11 @@ pub(super) struct Reach {
 
 /// Strips are chosen anew this often without the triangles that meet something. Each time most conflicts are gone; what
 /// is left after so many goes round in circles.
-const TRIES: usize = 8;
+const TRIES: usize = 12;
 
-/// How often the section is cut back where no strip fits, by a ring of triangles each time. A section is a few rings
-/// high.
-const CUTS: usize = 8;
+/// How often the section is cut back where no strip fits, by one ring of triangles at first and more each time: how deep
+/// the patch hangs into the solid there is no matter of the lattice.
+const CUTS: usize = 12;
 
 /// A rim, seen from the boundary.
 struct RimPlace {
@@ -59,14 +59,14 @@ impl RimPlace {
         let mut turned = 0.0;
         for j in 1..=rim.len() {
             let (before, at) = ((first + j - 1) % rim.len(), (first + j) % rim.len());
-            let most = 2.0 * points[before].distance(points[at]) + 2.0 * reach.across;
+            let most = 2.0 * points[before].distance(points[at]) + 2.0 * reach.along;
             let step = |arc: f64| {
                 let step = arc - closest[before].arc;
                 step - whole * (step / whole).round()
             };
             if step(closest[at].arc).abs() > most
                 && let Some(near) = curve.closest_of(points[at], number, Some((closest[before].arc, most)))
-                && near.distance <= 2.0 * reach.across
+                && near.distance <= reach.across
                 && j < rim.len()
             {
                 closest[at] = near;
@@ -74,7 +74,7 @@ impl RimPlace {
             let step = closest[at].arc - closest[before].arc;
             turned += step - whole * (step / whole).round();
         }
-        let is_near = closest.iter().all(|c| c.distance <= 2.0 * reach.across);
+        let is_near = closest.iter().all(|c| c.distance <= reach.across);
         let turns = is_near.then_some(-(turned / whole).round() as i32);
         RimPlace { points, closest, turns }
     }
@@ -199,8 +199,11 @@ pub(super) fn stitch(
         .map(|t| t as u32)
         .collect();
     let tree = BoxTree::new(&mesh, with_section.into_par_iter());
-    if let Err(blocked) = super::check::check_apart(&mesh, &tree, patch_count as u32, run)? {
-        return Ok(Err(blocked));
+    // What meets the patch near a rim goes; the ribbon takes its place.
+    let meeting = super::check::meeting_patch(&mesh, &tree, patch_count as u32, |_| true, run)?;
+    if !meeting.is_empty() {
+        open.drop_around(meeting.keys().map(|&t| t as usize - patch_count), 1);
+        close_strays(patch, boundary, &mut open, reach, Change::Drop);
     }
     let mut cuts = 0;
     let strip = loop {
@@ -225,7 +228,7 @@ pub(super) fn stitch(
                         dropped.extend(star.iter().map(|&t| t as usize));
                     }
                 }
-                open.drop(dropped);
+                open.drop_around(dropped, cuts / 2);
                 close_strays(patch, boundary, &mut open, reach, Change::Drop);
                 cuts += 1;
             }

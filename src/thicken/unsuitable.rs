@@ -9,6 +9,14 @@ pub enum ThickenError {
     /// The thickness is zero, negative, infinite or not a number.
     #[error("the thickness must be a positive number, not {0}; --side outer has the solid on the other side")]
     Thickness(f64),
+    /// The thickness map does not belong to the patch.
+    #[error("the thickness map has {values} values, and the patch {vertices} vertices")]
+    Map {
+        /// Values in the map.
+        values: usize,
+        /// Vertices of the patch.
+        vertices: usize,
+    },
     /// The voxel size is zero, negative, infinite or not a number.
     #[error("the voxel size must be a positive number, not {0}")]
     Voxel(f64),
@@ -79,8 +87,8 @@ pub enum PatchError {
         /// Its ends.
         ends: [[f64; 3]; 2],
     },
-    /// Parts of the patch touch in a vertex.
-    #[error("parts of the patch touch in the vertex at {}: separate them there", Point(*.at))]
+    /// A part of the patch touches the inside of another one in a vertex.
+    #[error("parts of the patch touch in the vertex at {}, inside one of them: separate them there", Point(*.at))]
     NonManifoldVertex {
         /// The vertex.
         at: [f64; 3],

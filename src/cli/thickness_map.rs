@@ -1,0 +1,48 @@
+//! `--thickness-map`: a thickness for each vertex of the input file.
+
+use super::exit::{Exit, Failure, of_io};
+use exocarp::io;
+use exocarp::mesh::TriMesh;
+use std::collections::HashMap;
+use std::path::Path;
+
+/// The values of the map in `path` for the vertices of `mesh`, which is what cleaning made of `input`.
+///
+/// The map is text: numbers in the order of the file's vertices, separated by blanks or line ends; `#` begins a comment.
+pub(super) fn load(path: &Path, input: &Path, mesh: &TriMesh) -> Result<Vec<f64>, Failure> {
+    let shown = path.display();
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| Failure::new(of_io(&error), format!("{shown} cannot be read ({error})")))?;
+    let mut values = Vec::new();
+    for (number, line) in (1..).zip(text.lines()) {
+        for word in line.split('#').next().unwrap_or_default().split_whitespace() {
+            let value = word.parse::<f64>().ok().filter(|value| *value > 0.0 && value.is_finite());
+            values.push(value.ok_or_else(|| {
+                Failure::new(
+                    Exit::Input,
+                    format!("{shown}, line {number}: a thickness must be a positive number, not {word}"),
+                )
+            })?);
+        }
+    }
+    let raw = io::load(input)?;
+    if raw.vertices.len() != values.len() {
+        return Err(Failure::new(
+            Exit::Input,
+            format!(
+                "{shown} has {} values, and {} has {} vertices: the map needs one for each",
+                values.len(),
+                input.display(),
+                raw.vertices.len()
+            ),
+        ));
+    }
+    // Cleaning drops and joins vertices, and moves none.
+    let of_point: HashMap<[u64; 3], f64> = raw.vertices.iter().map(key).zip(values).collect();
+    Ok(mesh.vertices.iter().map(|v| of_point.get(&key(v)).copied().unwrap_or(f64::NAN)).collect())
+}
+
+/// Coordinates as bits; both zeros are one.
+fn key(v: &[f64; 3]) -> [u64; 3] {
+    v.map(|x| (x + 0.0).to_bits())
+}
