@@ -257,10 +257,10 @@ pub(super) struct ThickenArguments {
     /// Voxels along the longest side of the patch's bounding box, grown by the thickness
     #[arg(long, value_name = "N", value_parser = resolution, allow_negative_numbers = true)]
     pub resolution: Option<u32>,
-    /// Rounds of shape processing at most; it ends when nothing moves
-    #[arg(long, value_name = "N", default_value_t = ThickenSettings::default().rounds)]
-    #[arg(value_parser = clap::value_parser!(u32).range(0..=1000))]
-    pub rounds: u32,
+    /// Halve the voxel size up to N times where the lattice is too coarse for the patch
+    #[arg(long, value_name = "N", default_value_t = ThickenSettings::default().halvings)]
+    #[arg(value_parser = clap::value_parser!(u32).range(0..=10))]
+    pub resolve: u32,
     /// Write PLY with 64-bit coordinates
     #[arg(long)]
     pub f64: bool,

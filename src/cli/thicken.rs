@@ -92,7 +92,7 @@ fn settings(arguments: &ThickenArguments) -> Result<ThickenSettings, Failure> {
         thickness: arguments.thickness.unwrap_or(defaults.thickness),
         side: arguments.side.side(),
         voxel,
-        rounds: arguments.rounds,
+        halvings: arguments.resolve,
         precision: precision(&arguments.output, arguments.f64)?,
         ..defaults
     };
@@ -132,7 +132,6 @@ struct Settings {
     voxel: f64,
     /// `null` when the voxel size was given or follows from the thickness.
     resolution: Option<u32>,
-    rounds: u32,
     threads: usize,
 }
 
@@ -155,7 +154,6 @@ fn save_statistics(
                 side: arguments.side.name(),
                 voxel: statistics.voxel,
                 resolution: arguments.resolution,
-                rounds: arguments.rounds,
                 threads: session.run.threads(),
             },
             phases,

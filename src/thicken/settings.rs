@@ -30,10 +30,9 @@ pub struct ThickenSettings {
     /// Voxel size, less than r/2 (\[WC13\] Remark 1); `None` for r/4.
     /// With a resolution N, h = (longest side of the patch's bounding box + 2 r) / N.
     pub voxel: Option<VoxelSize>,
-    /// How often the voxel size may be halved where the lattice is too coarse for the patch.
+    /// How often the voxel size may be halved where the lattice is too coarse for the patch. Each time takes four times as
+    /// long.
     pub halvings: u32,
-    /// Rounds of shape processing (\[WC13\] section 4.3) at most.
-    pub rounds: u32,
     /// Coordinates of the result.
     pub precision: Precision,
 }
@@ -45,8 +44,7 @@ impl Default for ThickenSettings {
             map: None,
             side: Side::Inner,
             voxel: None,
-            halvings: 3,
-            rounds: 20,
+            halvings: 1,
             precision: Precision::F32,
         }
     }

@@ -1,0 +1,231 @@
+//! Thickened patches: sound solids that keep their patch.
+
+use exocarp::error::Error;
+use exocarp::mesh::measure::{area, signed_volume};
+use exocarp::mesh::{TriMesh, shapes};
+use exocarp::offset::{Length, VoxelSize};
+use exocarp::run::RunSettings;
+use exocarp::thicken::{PatchError, Side, ThickenError, ThickenResult, ThickenSettings, thicken};
+use exocarp::verify::soundness;
+use std::collections::BTreeSet;
+use std::f64::consts::{PI, TAU};
+
+fn run() -> RunSettings {
+    RunSettings::with_threads(2).unwrap()
+}
+
+fn settings(thickness: f64, voxel: f64, side: Side) -> ThickenSettings {
+    ThickenSettings {
+        thickness: Length::Units(thickness),
+        voxel: Some(VoxelSize::Units(voxel)),
+        side,
+        ..ThickenSettings::default()
+    }
+}
+
+/// A surface over a grid of parameters in 0..=1; `closed` joins its last column to the first.
+fn surface(columns: u32, rows: u32, closed: bool, at: impl Fn(f64, f64) -> [f64; 3]) -> TriMesh {
+    let width = if closed { columns } else { columns + 1 };
+    let share = |i: u32, of: u32| f64::from(i) / f64::from(of);
+    let vertices = (0..=rows)
+        .flat_map(|j| (0..width).map(move |i| (i, j)))
+        .map(|(i, j)| at(share(i, columns), share(j, rows)).map(|x| f64::from(x as f32)))
+        .collect();
+    let number = |i: u32, j: u32| j * width + i % width;
+    let triangles = (0..rows)
+        .flat_map(|j| (0..columns).map(move |i| (i, j)))
+        .flat_map(|(i, j)| {
+            let [a, b, c, d] = [number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)];
+            [[a, b, c], [a, c, d]]
+        })
+        .collect();
+    TriMesh { vertices, triangles }
+}
+
+fn square(n: u32) -> TriMesh {
+    surface(n, n, false, |u, v| [2.0 * u - 1.0, 2.0 * v - 1.0, 0.0])
+}
+
+/// Two meshes as one.
+fn both(mut a: TriMesh, b: TriMesh) -> TriMesh {
+    let first = a.vertices.len() as u32;
+    a.vertices.extend(b.vertices);
+    a.triangles.extend(b.triangles.iter().map(|t| t.map(|v| v + first)));
+    a
+}
+
+/// Thickens, and checks everything that is promised.
+#[track_caller]
+fn check(patch: &TriMesh, settings: &ThickenSettings) -> ThickenResult {
+    let result = thicken(patch, settings, &run()).unwrap();
+    let report = soundness(&result.mesh, &run()).unwrap();
+    assert!(report.broken().is_empty(), "{:?}", report.broken());
+    let corners = |mesh: &TriMesh, t: usize| {
+        let mut corners = mesh.corners(t).map(|v| v.map(|x| (x + 0.0).to_bits()));
+        let first = (0..3).min_by_key(|&k| corners[k]).unwrap();
+        corners.rotate_left(first);
+        corners
+    };
+    let there: BTreeSet<_> = (0..result.mesh.triangles.len()).map(|t| corners(&result.mesh, t)).collect();
+    let mut turned = patch.clone();
+    if settings.side == Side::Outer {
+        turned.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
+    for t in 0..patch.triangles.len() {
+        assert!(there.contains(&corners(&turned, t)), "triangle {t} is lost");
+    }
+    assert!(signed_volume(&result.mesh) > 0.0);
+    result
+}
+
+#[track_caller]
+fn refused(patch: &TriMesh, settings: &ThickenSettings) -> ThickenError {
+    match thicken(patch, settings, &run()) {
+        Err(Error::Thicken(error)) => error,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_square_becomes_a_plate_of_its_thickness() {
+    for (n, side) in [(1, Side::Inner), (8, Side::Outer)] {
+        let result = check(&square(n), &settings(0.2, 0.047, side));
+        let volume = signed_volume(&result.mesh);
+        assert!((volume / 0.8 - 1.0).abs() < 0.005, "{volume}");
+        let sign = if side == Side::Inner { -1.0 } else { 1.0 };
+        for v in &result.mesh.vertices {
+            assert!((-1e-6..0.2 + 1e-6).contains(&(sign * v[2])), "{v:?}");
+        }
+    }
+}
+
+#[test]
+fn a_hemisphere_has_the_volume_of_steiner() {
+    let dome = surface(48, 12, true, |u, v| {
+        let (s, c) = (0.02 + 0.98 * v).mul_add(0.5 * PI, 0.0).sin_cos();
+        [s * (TAU * u).cos(), s * (TAU * u).sin(), c]
+    });
+    // The normals of a surface with these parameters point inward.
+    for (side, other) in [(Side::Inner, 1.15f64), (Side::Outer, 0.85)] {
+        let result = check(&dome, &settings(0.15, 0.05, side));
+        let cone = 1.0 - (1.0 - (0.01 * PI).cos());
+        let expected = (2.0 / 3.0 * PI * (other.powi(3) - 1.0)).abs() * cone;
+        let volume = signed_volume(&result.mesh);
+        assert!((volume / expected - 1.0).abs() < 0.02, "{side:?}: {volume} {expected}");
+    }
+}
+
+#[test]
+fn surfaces_with_several_loops_and_parts() {
+    let saddle = surface(10, 10, false, |u, v| {
+        let (x, y) = (2.0 * u - 1.0, 2.0 * v - 1.0);
+        [x, y, 0.5 * (x * x - y * y)]
+    });
+    let tube = surface(24, 4, true, |u, v| [3.0 + 0.7 * (TAU * u).cos(), 0.7 * (TAU * u).sin(), v]);
+    let ring = surface(24, 4, true, |u, v| {
+        let r = 0.5 + 0.5 * v;
+        [r * (TAU * u).cos(), r * (TAU * u).sin(), 3.0]
+    });
+    for side in [Side::Inner, Side::Outer] {
+        check(&both(both(saddle.clone(), tube.clone()), ring.clone()), &settings(0.2, 0.06, side));
+    }
+}
+
+#[test]
+fn a_closed_mesh_becomes_a_shell() {
+    let cube = (shapes::by_name("box").unwrap().make)(4);
+    let whole = signed_volume(&cube);
+    let inner = check(&cube, &settings(0.1, 0.04, Side::Inner));
+    let outer = check(&cube, &settings(0.1, 0.04, Side::Outer));
+    assert!(inner.statistics.triangles.new > 0 && signed_volume(&inner.mesh) < whole);
+    let steiner = area(&cube) * 0.1;
+    assert!(signed_volume(&outer.mesh) > steiner);
+    // Nothing is left within a wall as thick as the box: it is solid.
+    let solid = check(&cube, &settings(10.0, 1.0, Side::Inner));
+    assert_eq!(solid.statistics.triangles.new, 0);
+}
+
+#[test]
+fn parts_that_touch_in_a_vertex_hang_together() {
+    // Two opposite quarters of a checkerboard.
+    let mut board = square(6);
+    let quarter = |t: &[u32; 3]| {
+        let [x, y]: [f64; 2] =
+            [0, 1].map(|a| t.iter().map(|&v| board.vertices[v as usize][a]).sum::<f64>() / 3.0);
+        x * y > 0.0
+    };
+    let kept = board.triangles.iter().copied().filter(quarter).collect();
+    board.triangles = kept;
+    for side in [Side::Inner, Side::Outer] {
+        check(&board, &settings(0.3, 0.07, side));
+    }
+}
+
+#[test]
+fn a_folded_patch_is_merged_with_itself() {
+    // A strip bent to a U, whose legs are nearer to each other than twice the thickness.
+    let strip = surface(24, 6, false, |u, v| {
+        let (arm, r) = (1.0, 0.25);
+        let along = u * (2.0 * arm + PI * r);
+        let (x, z) = if along < arm {
+            (-along, r)
+        } else if along < arm + PI * r {
+            let a = (along - arm) / r;
+            (-arm - r * a.sin(), r * a.cos())
+        } else {
+            (along - 2.0 * arm - PI * r, -r)
+        };
+        [x, v, z]
+    });
+    for side in [Side::Inner, Side::Outer] {
+        check(&strip, &settings(0.4, 0.08, side));
+    }
+}
+
+#[test]
+fn what_is_no_oriented_patch_is_refused_with_its_place() {
+    let thin = settings(0.1, 0.03, Side::Inner);
+    let mut moebius = surface(24, 2, false, |u, v| {
+        let (turn, r) = (PI * u, 0.4 * (v - 0.5));
+        let around = 1.0 + r * turn.cos();
+        [around * (TAU * u).cos(), around * (TAU * u).sin(), r * turn.sin()]
+    });
+    // The last column is the first one upside down.
+    for triangle in &mut moebius.triangles {
+        for v in triangle.iter_mut().filter(|v| **v % 25 == 24) {
+            *v = (2 - *v / 25) * 25;
+        }
+    }
+    assert!(matches!(refused(&moebius, &thin), ThickenError::Patch(PatchError::Misoriented { .. })));
+
+    let crossing = both(square(2), surface(2, 2, false, |u, v| [0.1, u - 0.5, v - 0.5]));
+    let ThickenError::Patch(PatchError::Intersects { at, .. }) = refused(&crossing, &thin) else { panic!() };
+    assert!((at[0] - 0.1).abs() < 1e-6 && at[2].abs() < 1e-6, "{at:?}");
+
+    let empty = TriMesh::default();
+    assert!(matches!(refused(&empty, &thin), ThickenError::Patch(PatchError::NoTriangles)));
+    let coarse = settings(0.1, 0.05, Side::Inner);
+    assert!(matches!(refused(&square(2), &coarse), ThickenError::TooCoarse { .. }));
+}
+
+#[test]
+fn a_thickness_map_is_followed() {
+    let patch = square(8);
+    let map: Vec<f64> = patch.vertices.iter().map(|v| 0.2 + 0.05 * v[0]).collect();
+    let result = check(&patch, &ThickenSettings { map: Some(map), ..settings(0.2, 0.05, Side::Inner) });
+    assert!((signed_volume(&result.mesh) / 0.8 - 1.0).abs() < 0.01);
+    let wrong = ThickenSettings { map: Some(vec![0.1; 3]), ..settings(0.2, 0.05, Side::Inner) };
+    assert!(matches!(refused(&patch, &wrong), ThickenError::Map { values: 3, .. }));
+}
+
+#[test]
+fn the_same_bytes_for_every_number_of_threads() {
+    let wave = surface(12, 12, false, |u, v| [2.0 * u, 2.0 * v, 0.3 * (5.0 * u).sin() * (4.0 * v).cos()]);
+    let with = |threads| {
+        let run = RunSettings::with_threads(threads).unwrap();
+        thicken(&wave, &settings(0.2, 0.06, Side::Inner), &run).unwrap().mesh
+    };
+    let one = with(1);
+    assert!(!one.triangles.is_empty());
+    assert!(one == with(2) && one == with(5));
+}
