@@ -86,18 +86,57 @@ fn close_strays(patch: &TriMesh, boundary: &Boundary, open: &mut OpenMesh, reach
     let curve = (!boundary.is_empty()).then(|| Curve::new(patch, boundary));
     for _ in 0..CUTS {
         let rims = open.rims();
-        let is_stray: Vec<bool> = rims
-            .iter()
-            .map(|rim| {
-                curve.as_ref().is_none_or(|curve| {
-                    matches!(RimPlace::new(curve, &open.mesh, rim, reach).turns, None | Some(0))
-                })
-            })
-            .collect();
+        let is_stray: Vec<bool> = match &curve {
+            None => vec![true; rims.len()],
+            Some(curve) => {
+                let places = rims.iter().map(|rim| RimPlace::new(curve, &open.mesh, rim, reach));
+                let matches = matches(&places.collect::<Vec<_>>(), boundary);
+                matches.into_iter().map(|found| found == Match::Stray).collect()
+            }
+        };
         if !is_stray.contains(&true) || !open.close(&rims, |n| is_stray[n], change) {
             break;
         }
     }
+}
+
+/// What a rim is to the loop near it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Match {
+    /// It runs around it once.
+    Around,
+    /// So few vertices that nobody can tell, and no other rim is there for the loop.
+    Small,
+    /// It runs around nothing.
+    Stray,
+    /// It runs around it more than once, or another one does, too.
+    Tangled,
+}
+
+/// Vertices of a loop and of its rim, multiplied, up to which all strips between them are looked at.
+const SMALL: usize = 4096;
+
+fn matches(places: &[RimPlace], boundary: &Boundary) -> Vec<Match> {
+    let mut is_taken = vec![false; boundary.loops.len()];
+    let number = |place: &RimPlace| place.closest[0].number as usize;
+    let mut found = vec![Match::Stray; places.len()];
+    for (found, place) in found.iter_mut().zip(places) {
+        *found = match place.turns {
+            None | Some(0) => Match::Stray,
+            Some(1) if !std::mem::replace(&mut is_taken[number(place)], true) => Match::Around,
+            Some(_) => Match::Tangled,
+        };
+    }
+    for (found, place) in found.iter_mut().zip(places) {
+        let is_small = place.points.len() * boundary.loops[number(place)].len() <= SMALL;
+        if matches!(place.turns, Some(0 | -1))
+            && is_small
+            && !std::mem::replace(&mut is_taken[number(place)], true)
+        {
+            *found = Match::Small;
+        }
+    }
+    found
 }
 
 /// Pairs each rim with a boundary loop. Vertices of the rims are numbered on from `first`.
@@ -116,18 +155,19 @@ fn ribbons(
     let curve = Curve::new(patch, boundary);
     let mut rim_of: Vec<Option<usize>> = vec![None; boundary.loops.len()];
     let mut ribbons = Vec::with_capacity(rims.len());
-    for (number, rim) in rims.iter().enumerate() {
-        let RimPlace { points, closest, turns } = RimPlace::new(&curve, &open.mesh, rim, reach);
+    let places: Vec<RimPlace> =
+        rims.iter().map(|rim| RimPlace::new(&curve, &open.mesh, rim, reach)).collect();
+    let matches = matches(&places, boundary);
+    for ((number, rim), (place, found)) in rims.iter().enumerate().zip(places.into_iter().zip(matches)) {
+        let RimPlace { points, closest, .. } = place;
         let at = points[0].to_array();
-        match turns {
-            Some(1) => {}
-            None => return Err(Blocked { obstacle: Obstacle::Sheets, at }),
-            Some(_) => return Err(Blocked { obstacle: Obstacle::Loops, at }),
+        match found {
+            Match::Around | Match::Small => {}
+            Match::Stray => return Err(Blocked { obstacle: Obstacle::Sheets, at }),
+            Match::Tangled => return Err(Blocked { obstacle: Obstacle::Loops, at }),
         }
         let loops = closest[0].number as usize;
-        if rim_of[loops].replace(number).is_some() {
-            return Err(Blocked { obstacle: Obstacle::Loops, at });
-        }
+        rim_of[loops] = Some(number);
         // Against the direction of the section's triangles.
         let count = rim.len();
         let start = (0..count)
@@ -161,6 +201,11 @@ fn ribbons(
             arc += step;
             rim_arcs.push(arc);
         }
+        if found == Match::Small {
+            for (j, arc) in rim_arcs.iter_mut().enumerate() {
+                *arc = whole * j as f64 / count as f64;
+            }
+        }
         let rim_side = Side {
             vertices: order.iter().map(|&j| first + rim[j]).collect(),
             points: order.iter().map(|&j| points[j]).collect(),
@@ -169,7 +214,7 @@ fn ribbons(
         ribbons.push(Ribbon {
             boundary: boundary_side,
             rim: rim_side,
-            reach: reach.along,
+            reach: if found == Match::Small { whole } else { reach.along },
             forbidden: BTreeSet::new(),
         });
     }
