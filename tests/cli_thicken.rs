@@ -10,8 +10,11 @@ use std::path::Path;
 /// Writes a flat square of side 2 in four triangles, and returns its path.
 fn square(dir: &Path) -> String {
     let path = dir.join("square.off").display().to_string();
-    fs::write(&path, "OFF\n5 4 0\n-1 -1 0\n1 -1 0\n1 1 0\n-1 1 0\n0 0 0\n3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n")
-        .unwrap();
+    fs::write(
+        &path,
+        "OFF\n5 4 0\n-1 -1 0\n1 -1 0\n1 1 0\n-1 1 0\n0 0 0\n3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n",
+    )
+    .unwrap();
     path
 }
 
@@ -25,8 +28,7 @@ fn a_patch_becomes_a_solid_with_level_set_and_statistics() {
     let input = square(dir.path());
     let at = |name: &str| dir.path().join(name).display().to_string();
     let (solid, vdb, stats) = (at("solid.stl"), at("solid.vdb"), at("stats.json"));
-    let outcome =
-        exocarp(&["thicken", &input, "-t", "0.4", "-o", &solid, "--vdb", &vdb, "--stats", &stats]);
+    let outcome = exocarp(&["thicken", &input, "-t", "0.4", "-o", &solid, "--vdb", &vdb, "--stats", &stats]);
     assert_eq!((outcome.code, outcome.stderr.as_str()), (0, ""));
     assert_eq!(outcome.stdout.lines().count(), 1);
     assert_eq!(names(dir.path()), ["solid.stl", "solid.vdb", "square.off", "stats.json"]);

@@ -46,14 +46,16 @@ pub(super) fn meeting_patch(
     Ok(all.into_iter().collect())
 }
 
+/// Two triangles, and a point of both.
+type Found = Option<([u32; 2], [f64; 3])>;
+
 /// The first pair, by number, of triangles that meet, of those that `wanted` wants.
 fn first_pair(
     mesh: &TriMesh,
     tree: &BoxTree,
     wanted: impl Fn(u32, u32) -> bool + Sync,
     run: &RunSettings,
-) -> Result<Option<([u32; 2], [f64; 3])>, Cancelled> {
-    type Found = Option<([u32; 2], [f64; 3])>;
+) -> Result<Found, Cancelled> {
     let tasks = tree.pairs(
         run,
         || None,
