@@ -61,6 +61,22 @@ fn a_thickness_map_is_read() {
     let outcome = exocarp(&["thicken", &input, "--thickness-map", &map, "-o", &solid, "-q"]);
     assert_eq!((outcome.code, outcome.stdout.as_str(), outcome.stderr.as_str()), (0, "", ""));
 
+    // The same values in a PLY file are the same map.
+    let (ply, same) = (at("map.ply"), at("same.ply"));
+    let header = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n\
+                  property double thickness\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    let vertices = "0 0 0 0.3\n1 0 0 0.5\n0 1 0 0.5\n0 0 1 0.3\n0 2 0 0.4\n3 0 1 2\n";
+    fs::write(&ply, format!("{header}{vertices}")).unwrap();
+    let outcome = exocarp(&["thicken", &input, "--thickness-map", &ply, "-o", &same, "-q"]);
+    assert_eq!((outcome.code, outcome.stderr.as_str()), (0, ""));
+    assert!(fs::read(&same).unwrap() == fs::read(&solid).unwrap());
+    fs::remove_file(&same).unwrap();
+    fs::write(&ply, format!("{header}{vertices}").replace("thickness", "quality")).unwrap();
+    let outcome = exocarp(&["thicken", &input, "--thickness-map", &ply, "-o", &same]);
+    outcome.fails_with(3);
+    assert!(outcome.stderr.contains("no property thickness"), "{}", outcome.stderr);
+    fs::remove_file(&ply).unwrap();
+
     fs::write(&map, "0.3 0.5\n").unwrap();
     exocarp(&["thicken", &input, "--thickness-map", &map, "-o", &at("none.ply")]).fails_with(3);
     fs::write(&map, "0.3 0.5 -1 1 1\n").unwrap();

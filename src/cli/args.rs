@@ -241,7 +241,8 @@ pub(super) struct ThickenArguments {
     #[arg(long, short, value_name = "T", value_parser = length, allow_hyphen_values = true)]
     #[arg(required_unless_present = "thickness_map")]
     pub thickness: Option<Length>,
-    /// A text file with the thickness at each vertex of PATCH, in the order of the file, in model units
+    /// The thickness at each vertex of PATCH, in the order of the file, in model units: text, or a PLY file whose
+    /// vertices have the property `thickness`
     #[arg(long, value_name = "FILE", conflicts_with = "thickness")]
     pub thickness_map: Option<PathBuf>,
     /// The side of the patch on which the solid lies: behind it, or where its normals point

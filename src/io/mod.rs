@@ -130,15 +130,34 @@ pub fn load(path: &Path) -> Result<TriMesh, LoadError> {
         problem: fault.problem,
     };
     let format = Format::of(path).map_err(|e| at(None, Problem::Extension(e).into()))?;
-    let open = || {
-        let file = File::open(path)?;
-        match file.metadata()?.is_dir() {
-            true => Err(std::io::Error::from(std::io::ErrorKind::IsADirectory)),
-            false => Ok(file),
-        }
-    };
-    let file = open().map_err(|e| at(Some(format), Problem::Open(e).into()))?;
+    let file = open(path).map_err(|e| at(Some(format), Problem::Open(e).into()))?;
     read(file, format).map_err(|fault| at(Some(format), fault))
+}
+
+/// The numbers that the vertices of the PLY file `path` have under `name`, in the order of the file; `None` where no
+/// such property is, or it is a list.
+///
+/// # Errors
+/// As [`load`], and when the file is of another format.
+pub fn vertex_property(path: &Path, name: &str) -> Result<Option<Vec<f64>>, LoadError> {
+    // Also finds what is wrong with the file.
+    load(path)?;
+    let at = |fault: Fault| LoadError {
+        path: path.to_path_buf(),
+        format: Some(Format::Ply),
+        place: fault.place,
+        problem: fault.problem,
+    };
+    let file = open(path).map_err(|e| at(Problem::Open(e).into()))?;
+    ply::vertex_property(file, name).map_err(at)
+}
+
+fn open(path: &Path) -> std::io::Result<File> {
+    let file = File::open(path)?;
+    match file.metadata()?.is_dir() {
+        true => Err(std::io::ErrorKind::IsADirectory.into()),
+        false => Ok(file),
+    }
 }
 
 /// Saves `mesh` in the file `path`, in the format that belongs to the extension. An existing file is

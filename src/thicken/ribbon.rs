@@ -241,7 +241,8 @@ mod tests {
     #[test]
     fn forbidden_steps_are_not_taken() {
         let mut ribbon = circles(30, 30);
-        for _ in 0..5 {
+        // Within reach there are two rungs after seven steps, and four steps from them.
+        for _ in 0..3 {
             let steps = ribbon.cheapest().unwrap();
             assert!(steps.iter().all(|step| !ribbon.forbidden.contains(step)));
             ribbon.forbidden.insert(steps[7]);

@@ -50,7 +50,7 @@ pub enum ThickenError {
     Patch(#[from] PatchError),
     /// The lattice is too coarse for a place of the patch, also after all halvings.
     #[error(
-        "the solid cannot be closed near {}: {obstacle}, with voxel size {voxel:.6} after {halvings} halvings; choose a \
+        "the solid cannot be closed near {}: {obstacle}, with voxel size {voxel:.6}; choose a \
          smaller voxel size, or mend the patch there", Point(*.at)
     )]
     Obstacle {

@@ -8,10 +8,13 @@
 mod ascii;
 mod binary;
 mod header;
+mod property;
 
 use std::io::{BufReader, Read, Seek, Write};
 
 use ply_rs_bw::ply::Encoding;
+
+pub(super) use property::vertex_property;
 
 use super::Coordinates;
 use super::error::{Fault, Problem, quote};
