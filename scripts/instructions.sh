@@ -21,12 +21,14 @@ measure() {
     (cd "$work/$1" && CARGO_TARGET_DIR="$work/target" cargo build --release --locked --quiet)
     cp "$work/target/release/exocarp" "$work/exocarp-$1"
     [ -f "$work/model.ply" ] || "$work/exocarp-$1" model anchor -o "$work/model.ply" --quiet
-    local distance
+    local distance profile
     for distance in 2% -2%; do
-        valgrind --tool=callgrind --callgrind-out-file="$work/profile$distance-$1" \
+        # Valgrind reads a % in the name of the file as a place for something else.
+        profile=$work/profile${distance%\%}-$1
+        valgrind --tool=callgrind --callgrind-out-file="$profile" \
             "$work/exocarp-$1" offset "$work/model.ply" -d "$distance" --resolution 48 --threads 1 --quiet \
             -o "$work/out.ply" 2>"$work/log" || { cat "$work/log" >&2; exit 1; }
-        printf '%s %s\n' "$distance" "$(awk '/^(summary|totals):/ { print $2; exit }' "$work/profile$distance-$1")"
+        printf '%s %s\n' "$distance" "$(awk '/^(summary|totals):/ { print $2; exit }' "$profile")"
     done
 }
 
@@ -34,4 +36,4 @@ measure old "$old" >"$work/old.txt"
 measure new "$new" >"$work/new.txt"
 printf '%-10s %16s %16s %9s\n' distance old new change
 paste -d' ' "$work/old.txt" "$work/new.txt" |
-    awk '{ printf "%-10s %16d %16d %+8.2f%%\n", $1, $2, $4, 100 * ($4 / $2 - 1) }'
+    awk '{ printf "%-10s %16.0f %16.0f %+8.2f%%\n", $1, $2, $4, 100 * ($4 / $2 - 1) }'
