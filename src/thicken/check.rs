@@ -17,27 +17,24 @@ pub(super) fn check_patch(patch: &TriMesh, run: &RunSettings) -> Result<Result<(
         return Ok(Err(PatchError::Degenerate { triangle: t as u32, at: patch.corners(t)[0] }));
     }
     let tree = BoxTree::new(patch, (0..patch.triangles.len() as u32).into_par_iter());
-    let found = first_pair(patch, &tree, |_, _| true, run)?;
+    let found = first_pair(patch, &tree, run)?;
     Ok(found.map_or(Ok(()), |(triangles, at)| Err(PatchError::Intersects { triangles, at })))
 }
 
-/// The triangles from number `patch` on that are `there` and meet one of those before, ascending, each with a point of
-/// both.
+/// The triangles from number `patch` on that meet one of those before, ascending, each with a point of both.
 pub(super) fn meeting_patch(
     mesh: &TriMesh,
     tree: &BoxTree,
     patch: u32,
-    there: impl Fn(u32) -> bool + Sync,
     run: &RunSettings,
 ) -> Result<BTreeMap<u32, [f64; 3]>, Cancelled> {
     let found = tree.pairs(run, Vec::new, |found: &mut Vec<(u32, [f64; 3])>, a, b| {
-        let later = a.max(b);
-        if (a < patch) == (b < patch) || !there(later) {
+        if (a < patch) == (b < patch) {
             return;
         }
         let (va, vb) = (mesh.triangles[a as usize], mesh.triangles[b as usize]);
         if let Some(at) = meeting_point(va, mesh.corners(a as usize), vb, mesh.corners(b as usize)) {
-            found.push((later, at));
+            found.push((a.max(b), at));
         }
     })?;
     let mut all: Vec<_> = found.into_iter().flatten().collect();
@@ -49,18 +46,13 @@ pub(super) fn meeting_patch(
 /// Two triangles, and a point of both.
 type Found = Option<([u32; 2], [f64; 3])>;
 
-/// The first pair, by number, of triangles that meet, of those that `wanted` wants.
-fn first_pair(
-    mesh: &TriMesh,
-    tree: &BoxTree,
-    wanted: impl Fn(u32, u32) -> bool + Sync,
-    run: &RunSettings,
-) -> Result<Found, Cancelled> {
+/// The first pair, by number, of triangles that meet.
+fn first_pair(mesh: &TriMesh, tree: &BoxTree, run: &RunSettings) -> Result<Found, Cancelled> {
     let tasks = tree.pairs(
         run,
         || None,
         |found: &mut Found, a, b| {
-            if !wanted(a, b) || found.is_some_and(|(pair, _)| pair < [a, b]) {
+            if found.is_some_and(|(pair, _)| pair < [a, b]) {
                 return;
             }
             let (va, vb) = (mesh.triangles[a as usize], mesh.triangles[b as usize]);

@@ -245,7 +245,7 @@ pub(super) fn stitch(
         .collect();
     let tree = BoxTree::new(&mesh, with_section.into_par_iter());
     // What meets the patch near a rim goes; the ribbon takes its place.
-    let meeting = super::check::meeting_patch(&mesh, &tree, patch_count as u32, |_| true, run)?;
+    let meeting = super::check::meeting_patch(&mesh, &tree, patch_count as u32, run)?;
     if !meeting.is_empty() {
         open.drop_around(meeting.keys().map(|&t| t as usize - patch_count), 1);
         close_strays(patch, boundary, &mut open, reach, Change::Drop);
