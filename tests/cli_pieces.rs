@@ -36,11 +36,16 @@ impl Bench {
         self.at(name).display().to_string()
     }
 
-    /// `exocarp offset` of the model with these arguments, which must succeed.
-    fn offset(&self, arguments: &[&str]) {
+    /// `exocarp offset` of the model with these arguments.
+    fn run(&self, arguments: &[&str]) -> common::Outcome {
         let mut all = vec!["offset", self.input.as_str(), "-d", "3%", "--resolution", self.resolution];
         all.extend(arguments);
-        let outcome = exocarp(&all);
+        exocarp(&all)
+    }
+
+    /// As [`run`](Self::run), which must succeed.
+    fn offset(&self, arguments: &[&str]) {
+        let outcome = self.run(arguments);
         assert_eq!(outcome.code, 0, "{arguments:?} {outcome:?}");
     }
 
@@ -104,36 +109,11 @@ fn what_does_not_fit_is_streamed_by_itself() {
     // A format that is not written in pieces: the limit is said, and nothing is left behind.
     let before = names(bench.dir.path());
     let output = bench.text("out.obj");
-    exocarp(&[
-        "offset",
-        &bench.input,
-        "-d",
-        "3%",
-        "--resolution",
-        RESOLUTION,
-        "-o",
-        &output,
-        "--max-memory",
-        MEMORY,
-    ])
-    .fails_with(5);
-    exocarp(&["offset", &bench.input, "-d", "3%", "-o", &output, "--stream"]).fails_with(2);
+    bench.run(&["-o", &output, "--max-memory", MEMORY]).fails_with(5);
+    bench.run(&["-o", &output, "--stream"]).fails_with(2);
     // No slab is thin enough.
     let output = bench.text("thin.ply");
-    exocarp(&[
-        "offset",
-        &bench.input,
-        "-d",
-        "3%",
-        "--resolution",
-        RESOLUTION,
-        "-o",
-        &output,
-        "--max-memory",
-        "8M",
-        "--stream",
-    ])
-    .fails_with(5);
+    bench.run(&["-o", &output, "--max-memory", "8M", "--stream"]).fails_with(5);
     assert_eq!(names(bench.dir.path()), before);
 }
 
@@ -173,8 +153,8 @@ fn a_band_without_a_mesh_is_the_band() {
     assert!(bench.same("whole.vdb", "alone.vdb"));
     // Edges and contour are for the mesh.
     assert_eq!((&counted["edges"]["intersected"], &counted["contour"]["triangles"]), (&0.into(), &0.into()));
-    exocarp(&["offset", &bench.input, "-d", "3%"]).fails_with(2);
-    exocarp(&["offset", &bench.input, "-d", "3%", "--vdb", &alone, "--tile", "1/2"]).fails_with(2);
+    bench.run(&[]).fails_with(2);
+    bench.run(&["--vdb", &alone, "--tile", "1/2"]).fails_with(2);
 }
 
 #[test]
@@ -208,6 +188,6 @@ fn tiles_that_do_not_belong_together_are_refused_and_nothing_is_left() {
     }
     for wrong in ["0/3", "4/3", "1", "1/0", "a/b"] {
         let output = Path::new("x.ply").display().to_string();
-        exocarp(&["offset", &bench.input, "-d", "3%", "-o", &output, "--tile", wrong]).fails_with(2);
+        bench.run(&["-o", &output, "--tile", wrong]).fails_with(2);
     }
 }

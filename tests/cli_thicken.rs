@@ -97,6 +97,10 @@ fn what_cannot_be_thickened_ends_with_its_exit_code_and_no_file() {
     with(&[]).fails_with(2);
     with(&["-t", "0.4", "--vdb", "solid.txt"]).fails_with(2);
 
+    let outcome = with(&["-t", "0.4", "--resolution", "2000", "--max-memory", "64M"]);
+    outcome.fails_with(5);
+    assert!(outcome.stderr.contains("--max-memory"), "{}", outcome.stderr);
+
     let crossing = dir.path().join("crossing.off").display().to_string();
     fs::write(&crossing, "OFF\n6 2 0\n0 0 0\n2 0 0\n0 2 0\n0.5 0.5 -1\n0.5 0.5 1\n3 3 1\n3 0 1 2\n3 3 4 5\n")
         .unwrap();

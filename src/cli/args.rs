@@ -1,5 +1,6 @@
 //! The arguments, their units and their help.
 
+use super::examples;
 use super::numbers::{bytes, length, resolution, tile, tolerance, voxel};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use exocarp::compare::Method;
@@ -8,94 +9,10 @@ use exocarp::thicken::{Side, ThickenSettings};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-const EXAMPLES: &str = "\
-Examples:
-  exocarp model carved_cube -o cube.ply
-  exocarp offset cube.ply -d 2% -o grown.ply
-  exocarp offset cube.ply -d -2% --resolution 512 -o shrunk.stl --vdb shrunk.vdb
-  exocarp info shrunk.vdb
-  exocarp verify cube.ply grown.ply -d 2%
-
-Exit codes: 0 done, 1 internal error, 2 wrong use, 3 bad input, 4 the result is empty,
-5 a limit was hit (memory, size), 6 verify found a broken promise, 130 interrupted.";
-
-const OFFSET_EXAMPLES: &str = "\
-Examples:
-  exocarp offset part.stl -d 0.5 -o grown.stl              0.5 model units outward
-  exocarp offset part.stl -d -2% -o shrunk.ply             2% of the diagonal inward
-  exocarp offset part.stl -d 0 --voxel 0.1 -o remesh.obj   a sharp, clean remesh
-  exocarp offset part.stl -d 1% -o a.ply --vdb a.vdb --stats a.json
-  exocarp offset part.stl -d 1% --tolerance 0.02h -o a.ply     within 0.02 voxels of the true offset
-  exocarp offset scan.ply -d 1% --sign pseudonormal -o a.ply   an input with holes
-  exocarp offset part.stl -d 1% --vdb a.vdb                    the narrow band only
-  exocarp offset part.stl -d 1% --resolution 4096 --stream --max-memory 4G -o huge.ply
-
-Lengths are in model units (those of the input file); percentages are of the diagonal of the input's
-bounding box. Formats by extension, in and out: .obj .ply .stl .off";
-
-const MERGE_EXAMPLES: &str = "\
-Examples:
-  for i in 1 2 3 4; do exocarp offset big.stl -d 1% --resolution 4096 --tile $i/4 -o tile$i.ply; done
-  exocarp merge tile*.ply -o grown.ply                     the very file of an undivided run
-
-Each tile can be made on a machine of its own; all need the same input and settings.";
-
-const THICKEN_EXAMPLES: &str = "\
-Examples:
-  exocarp thicken face.ply -t 2.5 -o mask.stl                   behind the patch, 2.5 model units thick
-  exocarp thicken face.ply -t 1% --side outer -o mask.ply       in front of it, 1% of the diagonal
-  exocarp thicken face.ply -t 1% --resolution 512 -o mask.ply   a finer lattice for wall and inner shell
-  exocarp thicken closed.ply -t 1 -o shell.ply                  a closed mesh gets a cavity
-
-Every triangle of PATCH is in SOLID with the same coordinates (PLY with 32-bit coordinates and STL round those
-that have more digits; --f64, .obj and .off do not). The voxel size must be less than half of the thickness.";
-
-const COMPARE_EXAMPLES: &str = "\
-Examples:
-  exocarp compare part.stl -d 2%
-  exocarp compare part.stl -d -2% --resolution 512 --report out --json out/figures.json
-  exocarp compare part.stl -d 2% --methods exocarp,openvdb-wide --runs 1
-  exocarp compare part.stl -d 2% --python venv/bin/python        an interpreter with meshlib
-
-Methods: exocarp, openvdb-wide, openvdb-first, openvdb-weno5, meshlib-standard, meshlib-sharp.";
-
-const MODEL_EXAMPLES: &str = "\
-Examples:
-  exocarp model                                    the list of models
-  exocarp model anchor -o anchor.stl
-  exocarp model sphere --detail 64 -o sphere.ply";
-
-const INFO_EXAMPLES: &str = "\
-Examples:
-  exocarp info part.stl
-  exocarp info band.vdb
-  exocarp info part.stl --json";
-
-const VERIFY_EXAMPLES: &str = "\
-Examples:
-  exocarp verify part.stl grown.stl -d 2%                        topology, intersections, errors
-  exocarp verify part.stl grown.stl -d 2% --voxel 0.1            errors in voxels as well
-  exocarp verify part.stl grown.stl -d 0.5 --tolerance 0.01      exit code 6 if it is off by more
-  exocarp verify part.stl hollow.stl -d -2 --shell --json v.json the wall of a hollowed part
-
-OUTPUT is judged as it is on disk, whichever program wrote it; only vertices at exactly the same position are
-made one first. Ends with exit code 6 if OUTPUT is not closed, not 2-manifold, not consistently oriented, if it
-has triangles without area or that intersect, or if an error is above --tolerance.";
-
-const PAPER_EXAMPLES: &str = "\
-Examples:
-  exocarp paper --table 1                            generated models, 513^3 nodes as in the paper
-  exocarp paper --table 4 --models meshes            models by name: fandisk, armadillo, rocker-arm, ...
-  exocarp paper --resolution 128 --json tables.json  all tables, a quick look
-
-The paper: Liu and Wang, Fast intersection-free offset surface generation from freeform models with
-triangular meshes, IEEE T-ASE 8(2), 2011. Most of its models are not public; each table says what stands
-for them.";
-
 /// Offset surfaces of triangle meshes: closed, free of self-intersections, with sharp features, and their
 /// narrow band as OpenVDB.
 #[derive(Debug, Parser)]
-#[command(name = "exocarp", version, after_help = EXAMPLES, arg_required_else_help = true)]
+#[command(name = "exocarp", version, after_help = examples::ALL, arg_required_else_help = true)]
 #[command(disable_help_subcommand = true)]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -154,7 +71,7 @@ pub(super) enum Command {
 
 /// `exocarp offset`.
 #[derive(Args, Debug)]
-#[command(after_help = OFFSET_EXAMPLES)]
+#[command(after_help = examples::OFFSET)]
 pub(super) struct OffsetArguments {
     /// The mesh to offset
     pub input: PathBuf,
@@ -189,24 +106,8 @@ pub(super) struct OffsetArguments {
     /// Make tile I of N only, for `exocarp merge` to join: several machines share one offset
     #[arg(long, value_name = "I/N", value_parser = tile, conflicts_with = "resolve")]
     pub tile: Option<TileNumber>,
-    /// Write PLY with 64-bit coordinates
-    #[arg(long)]
-    pub f64: bool,
-    /// Write the narrow band as an OpenVDB level set, too
-    #[arg(long, value_name = "FILE.vdb")]
-    pub vdb: Option<PathBuf>,
-    /// Compression of the .vdb file
-    #[arg(long, value_enum, default_value_t = Codec::Blosc, requires = "vdb")]
-    pub vdb_compression: Codec,
-    /// Store the .vdb file's distances as 16-bit floats
-    #[arg(long, requires = "vdb")]
-    pub half: bool,
-    /// The model's unit, written into the .vdb file's metadata (mm, cm, in, ...)
-    #[arg(long, requires = "vdb", value_name = "UNIT")]
-    pub unit: Option<String>,
-    /// Write settings, times and counts as JSON
-    #[arg(long, value_name = "FILE.json")]
-    pub stats: Option<PathBuf>,
+    #[command(flatten)]
+    pub more: OutputArguments,
 }
 
 /// One of several tiles.
@@ -220,7 +121,7 @@ pub(super) struct TileNumber {
 
 /// `exocarp merge`.
 #[derive(Args, Debug)]
-#[command(after_help = MERGE_EXAMPLES)]
+#[command(after_help = examples::MERGE)]
 pub(super) struct MergeArguments {
     /// All tiles of one offset, in any order
     #[arg(required = true)]
@@ -232,7 +133,7 @@ pub(super) struct MergeArguments {
 
 /// `exocarp thicken`.
 #[derive(Args, Debug)]
-#[command(after_help = THICKEN_EXAMPLES)]
+#[command(after_help = examples::THICKEN)]
 pub(super) struct ThickenArguments {
     /// The patch to thicken
     #[arg(value_name = "PATCH")]
@@ -262,10 +163,17 @@ pub(super) struct ThickenArguments {
     #[arg(long, value_name = "N", default_value_t = ThickenSettings::default().halvings)]
     #[arg(value_parser = clap::value_parser!(u32).range(0..=10))]
     pub resolve: u32,
+    #[command(flatten)]
+    pub more: OutputArguments,
+}
+
+/// How the mesh is written, and what is written beside it.
+#[derive(Args, Debug)]
+pub(super) struct OutputArguments {
     /// Write PLY with 64-bit coordinates
     #[arg(long)]
     pub f64: bool,
-    /// Write the solid as an OpenVDB level set, too
+    /// Write the narrow band around the result as an OpenVDB level set, too
     #[arg(long, value_name = "FILE.vdb")]
     pub vdb: Option<PathBuf>,
     /// Compression of the .vdb file
@@ -280,6 +188,13 @@ pub(super) struct ThickenArguments {
     /// Write settings, times and counts as JSON
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
+}
+
+impl OutputArguments {
+    /// The files beside the mesh.
+    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        self.vdb.iter().chain(&self.stats)
+    }
 }
 
 /// `--side`.
@@ -310,7 +225,7 @@ impl PatchSide {
 
 /// `exocarp compare`.
 #[derive(Args, Debug)]
-#[command(after_help = COMPARE_EXAMPLES)]
+#[command(after_help = examples::COMPARE)]
 pub(super) struct CompareArguments {
     /// The mesh to offset, closed
     pub input: PathBuf,
@@ -407,7 +322,7 @@ pub(super) enum Codec {
 
 /// `exocarp model`.
 #[derive(Args, Debug)]
-#[command(after_help = MODEL_EXAMPLES)]
+#[command(after_help = examples::MODEL)]
 pub(super) struct ModelArguments {
     /// The model's name
     #[arg(requires = "output")]
@@ -427,7 +342,7 @@ pub(super) struct ModelArguments {
 
 /// `exocarp paper`.
 #[derive(Args, Debug)]
-#[command(after_help = PAPER_EXAMPLES)]
+#[command(after_help = examples::PAPER)]
 pub(super) struct PaperArguments {
     /// The table's number, 1 to 7 [default: all]
     #[arg(long, value_name = "1..7", value_parser = clap::value_parser!(u32).range(1..=7))]
@@ -447,7 +362,7 @@ pub(super) struct PaperArguments {
 
 /// `exocarp info`.
 #[derive(Args, Debug)]
-#[command(after_help = INFO_EXAMPLES)]
+#[command(after_help = examples::INFO)]
 pub(super) struct InfoArguments {
     /// A mesh or a .vdb file
     pub file: PathBuf,
@@ -458,7 +373,7 @@ pub(super) struct InfoArguments {
 
 /// `exocarp verify`.
 #[derive(Args, Debug)]
-#[command(after_help = VERIFY_EXAMPLES)]
+#[command(after_help = examples::VERIFY)]
 pub(super) struct VerifyArguments {
     /// The mesh that was offset
     pub input: PathBuf,

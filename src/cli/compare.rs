@@ -1,15 +1,16 @@
 //! `exocarp compare`: the same offset with other programs; and the hidden command that does one run of it.
 
 use super::args::{CompareArguments, WorkerArguments};
-use super::exit::{Exit, Failure, of_io};
-use super::offset::{DEFAULT_RESOLUTION, load_mesh};
+use super::exit::{Exit, Failure};
+use super::files::{load_mesh, save_json, save_text};
+use super::offset::DEFAULT_RESOLUTION;
 use super::outputs;
 use super::session::{Session, Verbosity, print};
 use exocarp::compare::{
     CompareSettings, Comparison, Event, Job, Method, Programs, compare, report, text, work,
 };
 use exocarp::offset::VoxelSize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// The page's name in the directory of the report.
@@ -32,16 +33,14 @@ pub(super) fn run(arguments: &CompareArguments, session: &Session) -> Result<(),
         session.warn(note);
     }
     if let Some(path) = &arguments.json {
-        let json = serde_json::to_string_pretty(&comparison)
-            .map_err(|error| Failure::new(Exit::Internal, error.to_string()))?;
-        write(path, &(json + "\n"), session)?;
+        save_json(path, &comparison, session)?;
     }
     if let Some(path) = &page {
         if session.verbosity == Verbosity::Verbose {
             session.tell("drawing the report");
         }
         let title = arguments.input.file_name().unwrap_or_default().to_string_lossy();
-        write(path, &report::page(&comparison, &loaded.mesh, &title, &session.run)?, session)?;
+        save_text(path, &report::page(&comparison, &loaded.mesh, &title, &session.run)?, session)?;
     }
     session.staging.commit()?;
     session.tell(&text(&comparison));
@@ -87,13 +86,6 @@ fn tell(event: &Event, session: &Session) {
         Event::Measured(m) => session.tell(&format!("  {:.2} s", m.engine)),
         Event::Judging(method) => session.tell(&format!("judging {}", method.title())),
     }
-}
-
-fn write(path: &Path, content: &str, session: &Session) -> Result<(), Failure> {
-    let staged = session.staging.stage(path)?;
-    std::fs::write(staged, content).map_err(|error| {
-        Failure::new(of_io(&error), format!("{} cannot be written ({error})", path.display()))
-    })
 }
 
 /// Nothing to compare is a failure, one peer less is none.

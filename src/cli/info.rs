@@ -2,8 +2,8 @@
 
 use super::args::InfoArguments;
 use super::exit::Failure;
+use super::files::load_mesh;
 use super::numbers::{grouped, short};
-use super::offset::load_mesh;
 use super::session::{Session, print};
 use super::statistics::MeshFacts;
 use exocarp::mesh::{CleanReport, Defects, Topology, measure};

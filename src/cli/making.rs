@@ -2,7 +2,7 @@
 
 use super::args::{OffsetArguments, TileNumber};
 use super::exit::Failure;
-use super::offset::{coordinates, format, save_mesh};
+use super::files::{coordinates, format, save_mesh};
 use super::session::Session;
 use exocarp::contour::SlabContour;
 use exocarp::error::Error;
@@ -48,13 +48,13 @@ pub(super) fn make(
         Way::Whole => {
             let result = offset(mesh, settings, run)?;
             let started = Instant::now();
-            save_mesh(&result.mesh, output, coordinates(arguments.f64), session)?;
+            save_mesh(&result.mesh, output, coordinates(arguments.more.f64), session)?;
             Ok((result, started.elapsed().as_secs_f64()))
         }
         Way::Slabs(memory) => {
             let staged = session.staging.stage(output)?;
             let named = |error| of_output(error, output);
-            let stream = MeshStream::create(&staged, coordinates(arguments.f64)).map_err(named)?;
+            let stream = MeshStream::create(&staged, coordinates(arguments.more.f64)).map_err(named)?;
             let mut sink = Streamed { stream, seconds: 0.0 };
             let result =
                 offset_in_slabs(mesh, settings, Cut::Memory(memory), &mut sink, run).map_err(|error| {
@@ -70,7 +70,7 @@ pub(super) fn make(
         Way::Tile(TileNumber { number, of }) => {
             let staged = session.staging.stage(output)?;
             let tile = identity(TileNumber { number, of }, mesh, settings);
-            let mut sink = Tiled { staged, tile, f64: arguments.f64, seconds: 0.0 };
+            let mut sink = Tiled { staged, tile, f64: arguments.more.f64, seconds: 0.0 };
             let result = offset_in_slabs(mesh, settings, Cut::Tile { number, of }, &mut sink, run);
             let result = result.map_err(|error| match error {
                 Error::Save(error) => of_output(error, output),

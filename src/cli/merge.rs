@@ -2,8 +2,8 @@
 
 use super::args::MergeArguments;
 use super::exit::Failure;
+use super::files::is_vdb;
 use super::numbers::{counted, grouped};
-use super::offset::is_vdb;
 use super::outputs;
 use super::session::Session;
 use exocarp::error::Error;

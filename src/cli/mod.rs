@@ -5,7 +5,9 @@
 
 mod args;
 mod compare;
+mod examples;
 mod exit;
+mod files;
 mod info;
 mod making;
 mod merge;

@@ -2,8 +2,8 @@
 
 use super::args::ModelArguments;
 use super::exit::Failure;
+use super::files::{check_mesh_output, coordinates, save_mesh};
 use super::numbers::{counted, short};
-use super::offset::{check_mesh_output, coordinates, save_mesh};
 use super::outputs;
 use super::session::{Session, print};
 use exocarp::mesh::shapes::{self, Shape};

@@ -1,7 +1,8 @@
 //! `exocarp paper`: the tables of the method's paper, measured here.
 
 use super::args::PaperArguments;
-use super::exit::{Exit, Failure, of_io};
+use super::exit::{Exit, Failure};
+use super::files::save_json;
 use super::outputs;
 use super::session::Session;
 use exocarp::paper::{PaperSettings, Report, Table, measure};
@@ -51,14 +52,11 @@ fn save(
     reports: &[Report],
     session: &Session,
 ) -> Result<(), Failure> {
-    let staged = session.staging.stage(output)?;
     let file = json!({
         "exocarp": env!("CARGO_PKG_VERSION"),
         "command": "paper",
         "settings": { "resolution": arguments.resolution, "threads": session.run.threads() },
         "tables": reports.iter().map(Report::json).collect::<Vec<Value>>(),
     });
-    std::fs::write(&staged, format!("{file:#}\n")).map_err(|error| {
-        Failure::new(of_io(&error), format!("{} cannot be written ({error})", output.display()))
-    })
+    save_json(output, &file, session)
 }

@@ -1,18 +1,17 @@
 //! `exocarp thicken`: load, clean, thicken, write.
 
 use super::args::ThickenArguments;
-use super::exit::{Failure, of_io};
-use super::numbers::{counted, grouped, short};
-use super::offset::{
-    STORED_HALF_WIDTH, check_mesh_output, check_vdb_output, coordinates, load_mesh, precision, save_mesh,
-    save_vdb, vdb_options,
+use super::exit::Failure;
+use super::files::{
+    STORED_HALF_WIDTH, check_mesh_output, check_vdb_output, coordinates, load_mesh, precision, save_json,
+    save_mesh, save_vdb, vdb_options,
 };
+use super::numbers::{counted, grouped, short};
 use super::outputs;
-use super::resources::peak_rss;
 use super::session::{Session, Verbosity};
-use super::statistics::MeshFacts;
+use super::statistics::{MeshFacts, Phases, RunFile};
 use super::thickness_map;
-use exocarp::mesh::{CleanReport, Topology};
+use exocarp::mesh::CleanReport;
 use exocarp::offset::{Length, OffsetSettings, VoxelSize, offset_band};
 use exocarp::run::Phase;
 use exocarp::thicken::{ThickenResult, ThickenSettings, ThickenStatistics, ThickenTimes, thicken};
@@ -21,11 +20,10 @@ use serde::Serialize;
 use std::path::Path;
 
 pub(super) fn run(arguments: &ThickenArguments, session: &Session) -> Result<(), Failure> {
-    check_mesh_output(&arguments.output, arguments.f64)?;
-    arguments.vdb.as_deref().map_or(Ok(()), check_vdb_output)?;
-    let written = std::iter::once(&arguments.output).chain(&arguments.vdb).chain(&arguments.stats);
-    outputs::check(written.map(|p| p.as_path()))?;
-    let mut settings = settings(arguments)?;
+    check_mesh_output(&arguments.output, arguments.more.f64)?;
+    arguments.more.vdb.as_deref().map_or(Ok(()), check_vdb_output)?;
+    outputs::check(std::iter::once(&arguments.output).chain(arguments.more.files()).map(|p| p.as_path()))?;
+    let mut settings = settings(arguments, session)?;
 
     let (loaded, loading) = load_mesh(&arguments.input, session)?;
     if let Some(path) = &arguments.thickness_map {
@@ -45,14 +43,14 @@ pub(super) fn run(arguments: &ThickenArguments, session: &Session) -> Result<(),
         ));
     }
     let (_, write) = session.phase(Phase::Write, || {
-        save_mesh(&result.mesh, &arguments.output, coordinates(arguments.f64), session)?;
-        arguments.vdb.as_deref().map_or(Ok(()), |path| save_level_set(&result, path, arguments, session))
+        save_mesh(&result.mesh, &arguments.output, coordinates(arguments.more.f64), session)?;
+        arguments.more.vdb.as_deref().map_or(Ok(()), |path| save_level_set(&result, path, arguments, session))
     })?;
-    let phases = Phases { load: loading.load, clean: loading.clean, engine: statistics.times, write };
-    if let Some(path) = &arguments.stats {
-        let topology = session.run.install(|| Topology::new(&loaded.mesh));
-        let facts = MeshFacts::new(&arguments.input, &loaded.mesh, &topology);
-        save_statistics(path, arguments, &facts, statistics, &phases, session)?;
+    let phases = Phases { loading, engine: statistics.times, write };
+    if let Some(path) = &arguments.more.stats {
+        let input = MeshFacts::of_input(&arguments.input, &loaded.mesh, session);
+        let stated = Settings::new(arguments, statistics, session);
+        save_json(path, &RunFile::new("thicken", input, stated, &phases, statistics, session), session)?;
     }
     session.staging.commit()?;
     tell(arguments, &result, &phases, session);
@@ -75,13 +73,12 @@ fn save_level_set(
         ..OffsetSettings::default()
     };
     let solid = offset_band(&result.mesh, &settings, &session.run)?;
-    let options = vdb_options(arguments.vdb_compression, arguments.half, arguments.unit.as_ref());
     // Closest triangles would be those of the solid, which is another file.
     let band = solid.band.map(|band| Band { closest: None, ..band });
-    band.map_or(Ok(()), |band| save_vdb(&band, path, None, &options, session))
+    band.map_or(Ok(()), |band| save_vdb(&band, path, None, &vdb_options(&arguments.more), session))
 }
 
-fn settings(arguments: &ThickenArguments) -> Result<ThickenSettings, Failure> {
+fn settings(arguments: &ThickenArguments, session: &Session) -> Result<ThickenSettings, Failure> {
     let voxel = match (arguments.voxel, arguments.resolution) {
         (Some(h), _) => Some(VoxelSize::Units(h)),
         (None, Some(n)) => Some(VoxelSize::Resolution(n)),
@@ -93,38 +90,15 @@ fn settings(arguments: &ThickenArguments) -> Result<ThickenSettings, Failure> {
         side: arguments.side.side(),
         voxel,
         halvings: arguments.resolve,
-        precision: precision(&arguments.output, arguments.f64)?,
+        precision: precision(&arguments.output, arguments.more.f64)?,
+        max_memory: session.max_memory,
         ..defaults
     };
     settings.validate().map_err(exocarp::error::Error::from)?;
     Ok(settings)
 }
 
-/// Seconds per phase.
-#[derive(Clone, Copy, Debug, Serialize)]
-struct Phases {
-    load: f64,
-    clean: f64,
-    #[serde(flatten)]
-    engine: ThickenTimes,
-    write: f64,
-}
-
-/// Everything about one run.
-#[derive(Debug, Serialize)]
-struct ThickenFile<'a> {
-    exocarp: &'static str,
-    command: &'static str,
-    input: &'a MeshFacts,
-    settings: Settings,
-    phases: &'a Phases,
-    wall: f64,
-    /// Bytes; 0 where the system does not tell.
-    peak_rss: u64,
-    halvings: u32,
-    triangles: exocarp::thicken::TriangleCounts,
-}
-
+/// The settings in the statistics file.
 #[derive(Debug, Serialize)]
 struct Settings {
     thickness: f64,
@@ -135,43 +109,25 @@ struct Settings {
     threads: usize,
 }
 
-fn save_statistics(
-    output: &Path,
-    arguments: &ThickenArguments,
-    input: &MeshFacts,
-    statistics: &ThickenStatistics,
-    phases: &Phases,
-    session: &Session,
-) -> Result<(), Failure> {
-    let staged = session.staging.stage(output)?;
-    let write = || -> std::io::Result<()> {
-        let file = ThickenFile {
-            exocarp: env!("CARGO_PKG_VERSION"),
-            command: "thicken",
-            input,
-            settings: Settings {
-                thickness: statistics.thickness,
-                side: arguments.side.name(),
-                voxel: statistics.voxel,
-                resolution: arguments.resolution,
-                threads: session.run.threads(),
-            },
-            phases,
-            wall: session.wall(),
-            peak_rss: peak_rss(),
-            halvings: statistics.halvings,
-            triangles: statistics.triangles,
-        };
-        std::fs::write(&staged, serde_json::to_string_pretty(&file)? + "\n")
-    };
-    write().map_err(|error| {
-        Failure::new(of_io(&error), format!("{} cannot be written ({error})", output.display()))
-    })
+impl Settings {
+    fn new(arguments: &ThickenArguments, engine: &ThickenStatistics, session: &Session) -> Self {
+        Settings {
+            thickness: engine.thickness,
+            side: arguments.side.name(),
+            voxel: engine.voxel,
+            resolution: arguments.resolution,
+            threads: session.run.threads(),
+        }
+    }
 }
 
-fn tell(arguments: &ThickenArguments, result: &ThickenResult, phases: &Phases, session: &Session) {
-    let more: String =
-        arguments.vdb.iter().chain(&arguments.stats).map(|path| format!("; {}", path.display())).collect();
+fn tell(
+    arguments: &ThickenArguments,
+    result: &ThickenResult,
+    phases: &Phases<ThickenTimes>,
+    session: &Session,
+) {
+    let more: String = arguments.more.files().map(|path| format!("; {}", path.display())).collect();
     session.tell(&format!(
         "{}: {}, {}, {:.2} s{more}",
         arguments.output.display(),
@@ -185,8 +141,8 @@ fn tell(arguments: &ThickenArguments, result: &ThickenResult, phases: &Phases, s
         let count = |name: &str, n: u64| format!("  {name:<28} {:>14}\n", grouped(n));
         let mut text = format!("  thickness {}, voxel size {}\n", short(s.thickness), short(s.voxel));
         for (name, time) in [
-            ("load", phases.load),
-            ("clean", phases.clean),
+            ("load", phases.loading.load),
+            ("clean", phases.loading.clean),
             ("hierarchy", s.times.hierarchy),
             ("nodes", s.times.nodes),
             ("faces", s.times.faces),

@@ -1,9 +1,9 @@
 //! `exocarp verify`: judge a mesh as the offset surface of another.
 
 use super::args::{Sign, VerifyArguments};
-use super::exit::{Exit, Failure, of_io};
+use super::exit::{Exit, Failure};
+use super::files::{load_mesh, save_json};
 use super::numbers::{grouped, short};
-use super::offset::load_mesh;
 use super::outputs;
 use super::session::Session;
 use exocarp::io;
@@ -89,7 +89,6 @@ fn save(
     report: &VerifyReport,
     session: &Session,
 ) -> Result<(), Failure> {
-    let staged = session.staging.stage(path)?;
     let file = VerifyFile {
         exocarp: env!("CARGO_PKG_VERSION"),
         command: "verify",
@@ -99,8 +98,7 @@ fn save(
         report,
         wall: session.wall(),
     };
-    let write = || std::fs::write(&staged, serde_json::to_string_pretty(&file)? + "\n");
-    write().map_err(|e| Failure::new(of_io(&e), format!("{} cannot be written ({e})", path.display())))
+    save_json(path, &file, session)
 }
 
 /// The report for people.

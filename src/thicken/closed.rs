@@ -23,6 +23,7 @@ pub(super) fn shell(
         distance: Length::Units(distance),
         voxel: VoxelSize::Units(voxel),
         precision: settings.precision,
+        max_memory: settings.max_memory,
         ..OffsetSettings::default()
     };
     let made = if is_around {

@@ -32,6 +32,7 @@ use crate::distance::SignedDistance;
 use crate::error::Error;
 use crate::lattice::Lattice;
 use crate::mesh::{Topology, TriMesh};
+use crate::offset::{Length, OffsetSettings, VoxelSize, check_memory};
 use crate::run::{Phase, RunSettings};
 use boundary::Boundary;
 use nodes::Nodes;
@@ -66,6 +67,7 @@ const BEYOND: f64 = 1.01;
 /// # Errors
 /// - [`Error::Thicken`]: settings that make no sense; a patch that is empty, not oriented, not 2-manifold or that
 ///   intersects itself; a place that no lattice was fine enough for.
+/// - [`Error::Memory`]: the lattice would not fit.
 /// - [`Error::Contour`], [`Error::TooManyEdges`]: the lattice is too fine for the precision or the indices.
 /// - [`Error::Cancelled`].
 pub fn thicken(
@@ -93,6 +95,7 @@ pub fn thicken(
     run.check()?;
     let mut times = ThickenTimes { hierarchy: started.elapsed().as_secs_f64(), ..ThickenTimes::default() };
     let work = Work { patch: &patch, boundary: &boundary, distance: &distance, settings, run };
+    work.check_memory(resolved.thickness, resolved.voxel)?;
     for halvings in 0.. {
         match work.on_lattice(resolved.thickness, resolved.voxel, &mut times)? {
             Ok(mesh) => {
@@ -108,9 +111,14 @@ pub fn thicken(
                 };
                 return Ok(ThickenResult { mesh, statistics });
             }
-            Err(_) if halvings < settings.halvings => resolved.voxel *= 0.5,
+            Err(_)
+                if halvings < settings.halvings
+                    && work.check_memory(resolved.thickness, 0.5 * resolved.voxel).is_ok() =>
+            {
+                resolved.voxel *= 0.5;
+            }
             Err(Blocked { obstacle, at }) => {
-                return Err(ThickenError::Obstacle { obstacle, at, voxel: resolved.voxel, halvings }.into());
+                return Err(ThickenError::Obstacle { obstacle, at, voxel: resolved.voxel }.into());
             }
         }
     }
@@ -137,6 +145,19 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
+    /// Checks that a lattice fits into the memory that the settings allow.
+    fn check_memory(&self, thickness: f64, voxel: f64) -> Result<(), Error> {
+        // The band lies around the patch, and reaches as far as the shell.
+        let band = OffsetSettings {
+            distance: Length::Units(0.0),
+            voxel: VoxelSize::Units(voxel),
+            half_width: thickness / voxel + BEYOND,
+            max_memory: self.settings.max_memory,
+            ..OffsetSettings::default()
+        };
+        check_memory(self.patch, &band)
+    }
+
     /// The solid on one lattice.
     fn on_lattice(
         &self,

@@ -35,6 +35,8 @@ pub struct ThickenSettings {
     pub halvings: u32,
     /// Coordinates of the result.
     pub precision: Precision,
+    /// Refuse to start what would need more memory than this, in bytes; `None` for what the system has available.
+    pub max_memory: Option<u64>,
 }
 
 impl Default for ThickenSettings {
@@ -46,6 +48,7 @@ impl Default for ThickenSettings {
             voxel: None,
             halvings: 1,
             precision: Precision::F32,
+            max_memory: None,
         }
     }
 }

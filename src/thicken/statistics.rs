@@ -42,10 +42,3 @@ pub struct ThickenTimes {
     /// Shape processing (\[WC13\] section 4.3; "Shape Opt.").
     pub shape: f64,
 }
-
-impl ThickenTimes {
-    /// The engine's time.
-    pub fn total(&self) -> f64 {
-        self.hierarchy + self.nodes + self.boundary + self.faces + self.shape
-    }
-}

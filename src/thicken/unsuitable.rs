@@ -60,8 +60,6 @@ pub enum ThickenError {
         at: [f64; 3],
         /// The last voxel size that was tried.
         voxel: f64,
-        /// How often it was halved.
-        halvings: u32,
     },
 }
 

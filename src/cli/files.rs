@@ -1,0 +1,136 @@
+//! What the commands read and write: meshes, level sets, JSON.
+
+use super::args::{Codec, OutputArguments};
+use super::exit::{Exit, Failure, of_io};
+use super::session::Session;
+use super::statistics::Loading;
+use exocarp::io::{self, Coordinates, Format, SaveOptions, Tile};
+use exocarp::mesh::{CleanReport, TriMesh, clean};
+use exocarp::offset::Precision;
+use exocarp::run::Phase;
+use exocarp::vdb::{self, Band, Compression, VdbError, VdbOptions, VdbPrecision};
+use serde::Serialize;
+use std::path::Path;
+
+/// Half-width in voxels of a band that other programs will read: OpenVDB's own default, and the least that
+/// its level-set checks accept.
+pub(super) const STORED_HALF_WIDTH: f64 = 3.0;
+
+/// The coordinates that the output will have: the promise of no intersections holds for those.
+pub(super) fn precision(output: &Path, f64: bool) -> Result<Precision, Failure> {
+    Ok(match format(output)? {
+        Format::Obj | Format::Off => Precision::F64,
+        Format::Ply if f64 => Precision::F64,
+        Format::Ply | Format::Stl => Precision::F32,
+    })
+}
+
+pub(super) fn format(output: &Path) -> Result<Format, Failure> {
+    Format::of(output).map_err(|e| Failure::usage(format!("{}: {e}", output.display())))
+}
+
+/// Whether a file's name ends in `.vdb`.
+pub(super) fn is_vdb(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("vdb"))
+}
+
+/// Checks that the extension of a mesh output is known and can hold what was asked for.
+pub(super) fn check_mesh_output(output: &Path, f64: bool) -> Result<(), Failure> {
+    if format(output)? == Format::Stl && f64 {
+        let shown = output.display();
+        return Err(Failure::usage(format!(
+            "{shown}: STL has no 64-bit coordinates; write .ply, or omit --f64"
+        )));
+    }
+    Ok(())
+}
+
+pub(super) fn coordinates(f64: bool) -> Coordinates {
+    if f64 { Coordinates::F64 } else { Coordinates::F32 }
+}
+
+/// A mesh ready for work.
+#[derive(Debug)]
+pub(super) struct Loaded {
+    pub mesh: TriMesh,
+    pub report: CleanReport,
+}
+
+/// Loads and cleans a mesh, and says how long both took.
+pub(super) fn load_mesh(path: &Path, session: &Session) -> Result<(Loaded, Loading), Failure> {
+    let (mesh, load) = session.phase(Phase::Load, || Ok(session.run.install(|| io::load(path))?))?;
+    let ((mesh, report), clean) = session.phase(Phase::Clean, || Ok(session.run.install(|| clean(mesh))))?;
+    Ok((Loaded { mesh, report }, Loading { load, clean }))
+}
+
+/// Writes a mesh to where it will be put in place from.
+pub(super) fn save_mesh(
+    mesh: &TriMesh,
+    output: &Path,
+    coordinates: Coordinates,
+    session: &Session,
+) -> Result<(), Failure> {
+    let staged = session.staging.stage(output)?;
+    io::save(mesh, &staged, &SaveOptions { coordinates }).map_err(|mut error| {
+        // The user knows nothing of the temporary path.
+        error.path = output.into();
+        error.into()
+    })
+}
+
+/// How a band is stored.
+pub(super) fn vdb_options(arguments: &OutputArguments) -> VdbOptions {
+    VdbOptions {
+        compression: match arguments.vdb_compression {
+            Codec::Blosc => Compression::Blosc,
+            Codec::Zip => Compression::Zip,
+            Codec::None => Compression::None,
+        },
+        precision: if arguments.half { VdbPrecision::Half } else { VdbPrecision::Full },
+        unit: arguments.unit.clone(),
+        ..VdbOptions::default()
+    }
+}
+
+/// Checks that a level set's file is named as one.
+pub(super) fn check_vdb_output(path: &Path) -> Result<(), Failure> {
+    if is_vdb(path) {
+        return Ok(());
+    }
+    Err(Failure::usage(format!("{}: --vdb needs a file name that ends in .vdb", path.display())))
+}
+
+/// Writes a band to where it will be put in place from.
+pub(super) fn save_vdb(
+    band: &Band,
+    output: &Path,
+    tile: Option<Tile>,
+    options: &VdbOptions,
+    session: &Session,
+) -> Result<(), Failure> {
+    session.run.check()?;
+    let staged = session.staging.stage(output)?;
+    let written = match tile {
+        Some(tile) => vdb::write_tile(&staged, band, tile, options),
+        None => vdb::write(&staged, &band.surface, band.closest.as_ref(), options),
+    };
+    written.map_err(|error| match error {
+        VdbError::Write { reason, .. } => VdbError::Write { path: output.into(), reason }.into(),
+        other => other.into(),
+    })
+}
+
+/// Writes text to where it will be put in place from.
+pub(super) fn save_text(output: &Path, text: &str, session: &Session) -> Result<(), Failure> {
+    let staged = session.staging.stage(output)?;
+    std::fs::write(&staged, text).map_err(|error| {
+        Failure::new(of_io(&error), format!("{} cannot be written ({error})", output.display()))
+    })
+}
+
+/// Writes JSON to where it will be put in place from.
+pub(super) fn save_json(output: &Path, value: &impl Serialize, session: &Session) -> Result<(), Failure> {
+    let json = serde_json::to_string_pretty(value)
+        .map_err(|error| Failure::new(Exit::Internal, error.to_string()))?;
+    save_text(output, &(json + "\n"), session)
+}
