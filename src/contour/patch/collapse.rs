@@ -78,7 +78,7 @@ impl Patch {
     /// How many neighbours the middles of two stars have in common.
     fn common_neighbours(&self, stars: &[Vec<usize>; 2]) -> usize {
         let [a, b] = stars.each_ref().map(|star| {
-            let mut all: Vec<u32> = star.iter().flat_map(|&n| self.vertices[n]).collect();
+            let mut all: Vec<u32> = star.iter().flat_map(|&n| self.triangles[n].vertices).collect();
             all.sort_unstable();
             all.dedup();
             all

@@ -97,8 +97,7 @@ impl Patch {
     /// Replaces an edge by the other diagonal of its two triangles, if the mesh stays embedded.
     pub fn try_flip(&mut self, edge: &PatchEdge) -> bool {
         let PatchEdge { triangles: [first, second], a, b, c, d } = *edge;
-        let joined = |v: &[u32; 3]| v.contains(&c.0) && v.contains(&d.0);
-        if self.vertices.iter().any(joined) {
+        if self.are_neighbours(c.0, d.0) {
             return false;
         }
         let pair = [(first, self.reshaped(first, [a, d, c])), (second, self.reshaped(second, [d, b, c]))];

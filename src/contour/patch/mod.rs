@@ -14,12 +14,14 @@ mod bounds;
 mod changes;
 mod collapse;
 mod edits;
+mod index;
 #[cfg(test)]
 mod tests;
 mod triangle;
 
 pub use bounds::Bounds;
 pub use changes::{Changes, NEW_TRIANGLE, NEW_VERTEX};
+use index::{Boxes, Corners};
 pub use triangle::{Homes, PatchEdge, PatchTriangle};
 
 type Point = [f64; 3];
@@ -36,9 +38,9 @@ pub struct Patch {
     bounds: Bounds,
     homes: Homes,
     triangles: Vec<PatchTriangle>,
-    /// Their vertices and boxes, which are searched all the time.
-    vertices: Vec<[u32; 3]>,
-    boxes: Vec<Bounds>,
+    /// The triangles by vertex, and by place.
+    corners: Corners,
+    boxes: Boxes,
     /// What was changed so far.
     pub changes: Changes,
 }
@@ -50,8 +52,8 @@ impl Patch {
             bounds,
             homes,
             triangles: Vec::with_capacity(USUAL),
-            vertices: Vec::with_capacity(USUAL),
-            boxes: Vec::with_capacity(USUAL),
+            corners: Corners::with_capacity(USUAL),
+            boxes: Boxes::with_capacity(USUAL),
             changes: Changes::default(),
         }
     }
@@ -84,10 +86,11 @@ impl Patch {
                 return false;
             }
         }
-        for (n, (other, other_box)) in self.triangles.iter().zip(&self.boxes).enumerate() {
-            if !other_box.meets(&around) || changed.iter().any(|&(m, _)| m == n) || gone.contains(&n) {
+        for n in self.boxes.near(&around) {
+            if changed.iter().any(|&(m, _)| m == n) || gone.contains(&n) {
                 continue;
             }
+            let (other, other_box) = (&self.triangles[n], self.boxes.of(n));
             let meets =
                 |((_, t), b): (&(usize, PatchTriangle), &Bounds)| b.meets(other_box) && t.meets(other);
             if changed.iter().zip(&boxes).any(meets) {
@@ -100,9 +103,9 @@ impl Patch {
     fn put(&mut self, changed: &[(usize, PatchTriangle)]) {
         for &(n, triangle) in changed {
             if n < self.triangles.len() {
+                self.corners.replace(n, self.triangles[n].vertices, triangle.vertices);
                 self.triangles[n] = triangle;
-                self.vertices[n] = triangle.vertices;
-                self.boxes[n] = triangle.bounds();
+                self.boxes.replace(n, triangle.bounds());
             } else {
                 self.push(triangle, triangle.bounds());
             }
@@ -111,21 +114,21 @@ impl Patch {
 
     /// Whether triangle `n` of the patch was taken out.
     pub fn is_gone(&self, n: usize) -> bool {
-        self.vertices[n] == NOBODY
+        self.triangles[n].vertices == NOBODY
     }
 
     /// Takes a triangle out; the numbers of the others stay.
     fn remove(&mut self, n: usize) {
         let nothing =
             PatchTriangle { number: usize::MAX, vertices: NOBODY, corners: [[f64::NAN; 3]; 3], home: 0 };
+        self.corners.remove(n, self.triangles[n].vertices);
         self.triangles[n] = nothing;
-        self.vertices[n] = nothing.vertices;
-        self.boxes[n] = Bounds::NOTHING;
+        self.boxes.replace(n, Bounds::NOTHING);
     }
 
     fn push(&mut self, triangle: PatchTriangle, bounds: Bounds) {
         self.triangles.push(triangle);
-        self.vertices.push(triangle.vertices);
+        self.corners.push(triangle.vertices);
         self.boxes.push(bounds);
     }
 
@@ -140,34 +143,32 @@ impl Patch {
         (0..self.triangles.len()).filter(is_one).collect()
     }
 
-    /// The numbers in the patch of the triangles at a vertex.
+    /// The numbers in the patch of the triangles at a vertex, ascending.
     pub fn star(&self, vertex: u32) -> Vec<usize> {
-        // Compared without short cuts, for speed.
-        let has = |[a, b, c]: [u32; 3]| (a == vertex) | (b == vertex) | (c == vertex);
-        self.vertices.iter().enumerate().filter_map(|(n, &v)| has(v).then_some(n)).collect()
+        let mut star: Vec<usize> = self.corners.of(vertex).map(|(n, _)| n).collect();
+        star.sort_unstable();
+        star
     }
 
     /// The position of a vertex of the patch.
     pub fn position(&self, vertex: u32) -> Option<Point> {
-        self.vertices
-            .iter()
-            .position(|v| v.contains(&vertex))
-            .and_then(|n| self.triangles[n].position(vertex))
+        self.corners.of(vertex).next().map(|(n, k)| self.triangles[n].corners[k])
     }
 
     /// Whether a vertex other than `vertex` lies within `radius` of `p`.
     pub fn is_taken(&self, p: Point, radius: f64, vertex: u32) -> bool {
         let near = |q: Point| (0..3).map(|a| (q[a] - p[a]) * (q[a] - p[a])).sum::<f64>() <= radius * radius;
-        self.triangles.iter().any(|t| t.vertices.iter().zip(t.corners).any(|(&v, q)| v != vertex && near(q)))
+        let around = Bounds::around([p]).grown(radius);
+        let mut triangles = self.boxes.near(&around).map(|n| &self.triangles[n]);
+        triangles.any(|t| t.vertices.iter().zip(t.corners).any(|(&v, q)| v != vertex && near(q)))
     }
 
     /// The vertices within `radius` of `p`, by number, with the squares of their distances.
     pub fn vertices_near(&self, p: Point, radius: f64) -> Vec<(u32, f64)> {
         let distance2 = |q: Point| (0..3).map(|a| (q[a] - p[a]) * (q[a] - p[a])).sum::<f64>();
-        let near = self.near(&Bounds::around([p]).grown(radius));
-        let corners = near
-            .into_iter()
-            .flat_map(|n| self.triangles[n].vertices.into_iter().zip(self.triangles[n].corners));
+        let around = Bounds::around([p]).grown(radius);
+        let near = self.boxes.near(&around).map(|n| &self.triangles[n]);
+        let corners = near.flat_map(|t| t.vertices.into_iter().zip(t.corners));
         let mut all: Vec<(u32, f64)> =
             corners.map(|(v, q)| (v, distance2(q))).filter(|(_, d)| *d <= radius * radius).collect();
         all.sort_unstable_by_key(|(v, _)| *v);
@@ -178,41 +179,29 @@ impl Patch {
     /// The edges at a vertex and those opposite to it, with both their triangles.
     pub fn edges_around(&self, vertex: u32) -> Vec<PatchEdge> {
         let star = self.star(vertex);
-        let Some(&first) = star.first() else { return Vec::new() };
-        let around = star.iter().fold(self.boxes[first], |all, &n| all.with(&self.boxes[n]));
-        let near = self.near(&around);
         let mut edges = Vec::with_capacity(2 * star.len());
-        for &n in &star {
+        for n in star {
             let Some(k) = self.triangles[n].place(vertex) else { continue };
             // The edge from the vertex on, and the opposite one: each edge once.
             for side in [k, (k + 1) % 3] {
-                edges.extend(self.edge_among(&near, n, side));
+                edges.extend(self.edge(n, side));
             }
         }
         edges
     }
 
+    /// Whether two vertices have an edge.
+    fn are_neighbours(&self, a: u32, b: u32) -> bool {
+        self.corners.of(a).any(|(n, _)| self.triangles[n].vertices.contains(&b))
+    }
+
     /// Side `side` of triangle `n`, with the triangle beyond it.
     pub fn edge(&self, n: usize, side: usize) -> Option<PatchEdge> {
-        self.edge_among(&self.near(&self.boxes[n]), n, side)
-    }
-
-    /// The numbers in the patch of the triangles whose boxes meet `bounds`.
-    fn near(&self, bounds: &Bounds) -> Vec<usize> {
-        let meets = |(n, b): (usize, &Bounds)| b.meets(bounds).then_some(n);
-        self.boxes.iter().enumerate().filter_map(meets).collect()
-    }
-
-    /// Side `side` of triangle `n`, with the triangle beyond it, which is one of `near`.
-    fn edge_among(&self, near: &[usize], n: usize, side: usize) -> Option<PatchEdge> {
         let t = &self.triangles[n];
         let corner = |k: usize| (t.vertices[k % 3], t.corners[k % 3]);
         let (a, b, c) = (corner(side), corner(side + 1), corner(side + 2));
-        let (m, k) = near.iter().find_map(|&m| {
-            let [p, q, r] = self.vertices[m];
-            let k = [(p, q), (q, r), (r, p)].into_iter().position(|edge| edge == (b.0, a.0))?;
-            Some((m, k))
-        })?;
+        let is_beyond = |&(m, k): &(usize, usize)| self.triangles[m].vertices[(k + 1) % 3] == a.0;
+        let (m, k) = self.corners.of(b.0).find(is_beyond)?;
         let other = &self.triangles[m];
         let d = (other.vertices[(k + 2) % 3], other.corners[(k + 2) % 3]);
         Some(PatchEdge { triangles: [n, m], a, b, c, d })

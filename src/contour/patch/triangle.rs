@@ -52,10 +52,6 @@ impl PatchTriangle {
     pub(super) fn place(&self, vertex: u32) -> Option<usize> {
         self.vertices.iter().position(|&v| v == vertex)
     }
-
-    pub(super) fn position(&self, vertex: u32) -> Option<Point> {
-        self.place(vertex).map(|k| self.corners[k])
-    }
 }
 
 /// The edge between two triangles, seen from the first: it runs from `a` to `b` there.
