@@ -2,16 +2,15 @@
 
 use super::ContourStatistics;
 use super::cell::Edge;
-use super::feature::Normals;
-use super::features::{Bend, FeatureVertex, Features};
+use super::features::{Bend, Features};
 use super::grid::Grid;
-use super::numbering::{CellId, CellNumbers, CornerSigns, constant_case, locate};
+use super::leaf_vertices::LeafVertices;
+use super::numbering::{CellId, CellNumbers};
 use super::recover::Wish;
 use super::sheets::{Case, CaseId, CaseTable};
 use super::surface::Surface;
-use super::vertex::{self, Placement};
-use crate::band::{Ijk, LeafId, SignField};
-use crate::edge::{Crossings, bits};
+use crate::band::{LeafId, SignField};
+use crate::edge::Crossings;
 use crate::run::{Cancelled, PhaseGuard};
 use crate::slab::Slab;
 use rayon::prelude::*;
@@ -37,10 +36,19 @@ pub struct Cells<'a> {
 
 /// The case of an active cell, and its vertices.
 #[derive(Clone, Copy, Debug, Default)]
-struct CellCase {
+pub struct CellCase {
     /// The number of the vertex of sheet 0; the other sheets' follow.
-    first_vertex: u32,
-    case: CaseId,
+    pub first_vertex: u32,
+    /// How the contour runs through it.
+    pub case: CaseId,
+}
+
+impl CellCase {
+    /// The number of the vertex of the sheet through the crossing of `edge`.
+    #[inline]
+    pub fn vertex(&self, table: &CaseTable, edge: Edge) -> u32 {
+        self.first_vertex + table.case(self.case).sheet_of(edge)
+    }
 }
 
 /// The vertices of all sheets.
@@ -76,21 +84,23 @@ impl<'a> Cells<'a> {
         let leaves: Vec<LeafId> = signs.leaves().collect();
         let case_slices = split(&mut cases, leaves.iter().map(|&leaf| numbers.range(leaf).len()));
         let vertex_slices = split(&mut vertices, leaves.iter().map(|&leaf| numbers.vertex_range(leaf).len()));
-        let placed: Vec<(Vec<Wish>, Vec<FeatureVertex>, ContourStatistics)> = leaves
+        let placed: Vec<LeafVertices> = leaves
             .par_iter()
             .zip(case_slices)
             .zip(vertex_slices)
             .with_min_len(16)
             .map(|((&leaf, cases), vertices)| {
                 phase.advance(1)?;
-                Ok(cells.place_in_leaf(leaf, cases, vertices))
+                Ok(LeafVertices::place(&cells, leaf, cases, vertices))
             })
             .collect::<Result<_, Cancelled>>()?;
         cells.cases = cases;
         let mut statistics = ContourStatistics::default();
         let mut wishes = Vec::with_capacity(placed.len());
         let mut features = Vec::new();
-        for ((wished, found, counts), &leaf) in placed.into_iter().zip(&leaves) {
+        for (LeafVertices { wishes: wished, features: found, counts }, &leaf) in
+            placed.into_iter().zip(&leaves)
+        {
             wishes.push(wished);
             features.extend(found);
             if cells.owns(leaf) {
@@ -115,55 +125,13 @@ impl<'a> Cells<'a> {
     /// The number of the vertex of the sheet of `cell` through the crossing of `edge`.
     #[inline]
     pub fn vertex(&self, cell: CellId, edge: Edge) -> u32 {
-        let CellCase { first_vertex, case } = self.cases[cell.0 as usize];
-        first_vertex + CaseTable::get().case(case).sheet_of(edge)
+        self.cell_case(cell).vertex(CaseTable::get(), edge)
     }
 
-    /// Fills in the cases and the vertices of the cells of one leaf.
-    fn place_in_leaf(
-        &self,
-        leaf: LeafId,
-        cases: &mut [CellCase],
-        vertices: &mut [[f64; 3]],
-    ) -> (Vec<Wish>, Vec<FeatureVertex>, ContourStatistics) {
-        let Cells { signs, crossings, grid, numbers, .. } = self;
-        let mut statistics = ContourStatistics { cells: cases.len() as u64, ..Default::default() };
-        let (mut wishes, mut features) = (Vec::new(), Vec::new());
-        let Some(corners) = CornerSigns::new(signs, leaf) else {
-            return (wishes, features, statistics);
-        };
-        let table = CaseTable::get();
-        let first_vertex = numbers.vertex_range(leaf).start as u32;
-        let mut done = 0;
-        for (cell, number) in cases.iter_mut().zip(bits(numbers.active(leaf))) {
-            let id = constant_case(table, corners.mask(number));
-            *cell = CellCase { first_vertex: first_vertex + done as u32, case: id };
-            let case = table.case(id);
-            statistics.several_sheets += u64::from(case.has_several_sheets());
-            let local = Ijk::in_leaf(Ijk::default(), number);
-            let crossing = |edge: Edge| {
-                let (at, number) = locate(signs, leaf, (local + Ijk(edge.low().offset())).0);
-                let id = crossings.numbers.get(at, edge.axis(), number).expect("the edge changes sign");
-                crossings.sample(id)
-            };
-            for sheet in 0..case.sheets().len() {
-                let at = signs.origin(leaf) + local;
-                let placed = vertex::place(grid, at, case, sheet, crossing, self.surface);
-                vertices[done] = placed.position;
-                if let Some(feature) = placed.feature {
-                    let vertex = first_vertex + done as u32;
-                    features.push(FeatureVertex { vertex, feature });
-                    if placed.placement == Placement::Clamped {
-                        wishes.push(Wish { vertex, place: Some(feature.point) });
-                    } else if feature.normals == Normals::default() {
-                        wishes.push(Wish { vertex, place: None });
-                    }
-                }
-                done += 1;
-                statistics.clamped += u64::from(placed.placement == Placement::Clamped);
-            }
-        }
-        (wishes, features, statistics)
+    /// The case of `cell`, and its vertices.
+    #[inline]
+    pub fn cell_case(&self, cell: CellId) -> CellCase {
+        self.cases[cell.0 as usize]
     }
 }
 

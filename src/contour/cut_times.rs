@@ -1,10 +1,11 @@
 //! The time that choosing and making the triangles takes, by method (\[LW11\] Table VI).
 
 use super::cells::Cells;
+use super::edge_polygon::{EdgePolygon, for_polygons};
+use super::features::Sides;
 use super::grid::Grid;
 use super::numbering::CellNumbers;
-use super::output::{EdgePolygon, for_polygons};
-use super::polygonize::{Cut, CutMethod, polygonize};
+use super::polygonize::{Cut, CutMethod, Fit, polygonize};
 use super::{ContourError, ContourSettings, face_vertex, reach};
 use crate::band::{Lattice, SignField};
 use crate::edge::Crossings;
@@ -51,12 +52,16 @@ pub fn cut_times<const N: usize>(
         let mut faces = face_vertex::face_vertices(&cells, &vertices, run)?;
         vertices.append(&mut faces.positions);
         let mut times = [CutTimes::default(); N];
-        let mut polygons: Vec<EdgePolygon> = Vec::new();
+        let mut polygons: Vec<EdgePolygon<'static>> = Vec::new();
         let mut triangles = Vec::new();
         for leaf in signs.leaves() {
             phase.advance(1)?;
             polygons.clear();
-            for_polygons(&cells, &faces, &vertices, leaf, |polygon| polygons.push(polygon));
+            for_polygons(&cells, &faces, &vertices, leaf, |polygon| {
+                // Without a surface to ask there are no features, and no sides.
+                let fit = Fit { sides: &Sides::NONE, ..polygon.fit };
+                polygons.push(EdgePolygon { fit, ..polygon });
+            });
             for (times, method) in times.iter_mut().zip(methods) {
                 let mut shortest = f64::INFINITY;
                 for _ in 0..ROUNDS {
@@ -77,7 +82,7 @@ pub fn cut_times<const N: usize>(
     })
 }
 
-fn cut_all(polygons: &[EdgePolygon], method: CutMethod, triangles: &mut Vec<[u32; 3]>) -> u64 {
+fn cut_all(polygons: &[EdgePolygon<'_>], method: CutMethod, triangles: &mut Vec<[u32; 3]>) -> u64 {
     let mut split = 0;
     for EdgePolygon { polygon, envelope, fit, .. } in polygons {
         split += u64::from(polygonize(polygon, envelope, fit, method, triangles) == Cut::Split);

@@ -50,17 +50,17 @@ pub struct Editor<'a> {
     /// Whether what the features nearby say is enough where they say that the surface is near.
     pub trusting: bool,
     /// See [`Surface::at`].
-    pub hint: u32,
+    pub piece: u32,
 }
 
 impl Editor<'_> {
     /// Where a vertex that is far from the surface would be on it.
     pub fn place_on_surface(&mut self, vertex: u32) -> Option<Point> {
         let origin = self.patch.position(vertex)?;
-        let mut ask = Asker { surface: self.surface, origin, voxel: self.voxel(), hint: self.hint };
+        let mut ask = Asker { surface: self.surface, origin, voxel: self.voxel(), piece: self.piece };
         let is_far = ask.at([0.0; 3]).0.abs() > self.tolerance;
         let place = if is_far { nearest(&mut ask, [0.0; 3]) } else { None };
-        self.hint = ask.hint;
+        self.piece = ask.piece;
         place.map(|p| self.grid.round(std::array::from_fn(|i| origin[i] + self.voxel() * p[i])))
     }
 
@@ -170,11 +170,11 @@ impl Editor<'_> {
     /// Points of the surface near `from`: the crease or corner between the sides that are seen from there towards
     /// the points around, and the next point at all.
     fn surface_points(&mut self, from: Point, around: &[Point]) -> [Option<Point>; 2] {
-        let mut ask = Asker { surface: self.surface, origin: from, voxel: self.voxel(), hint: self.hint };
+        let mut ask = Asker { surface: self.surface, origin: from, voxel: self.voxel(), piece: self.piece };
         let towards = around.iter().map(|p| std::array::from_fn(|i| 0.5 * (p[i] - from[i]) / self.voxel()));
         let crease = feature_between(&mut ask, towards);
         let next = nearest(&mut ask, [0.0; 3]);
-        self.hint = ask.hint;
+        self.piece = ask.piece;
         let world = |p: Point| std::array::from_fn(|i| from[i] + self.voxel() * p[i]);
         [crease.map(world), next.map(world)]
     }
@@ -194,7 +194,7 @@ impl Editor<'_> {
         if !sides.is_empty() && sides.distance(p) < SURE * self.voxel() {
             return 0.0;
         }
-        self.surface.at(p, &mut self.hint).0.abs() / self.voxel()
+        self.surface.at(p, &mut self.piece).0.abs() / self.voxel()
     }
 }
 

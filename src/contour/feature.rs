@@ -2,12 +2,13 @@
 //!
 //! The minimiser of the error function of a cell is only as good as the cell's crossings: a third plane that
 //! crosses no edge of the cell is missing, and curved sides are taken as planes far from where they are needed.
-//! With the surface at hand, the sides are asked again beside the place where they meet, until it stays:
+//! With the surface at hand, the pieces of it that the crossings lie on are asked at the place where they meet, until it
+//! stays, and then the surface itself, whether it has another piece there that is nearer:
 //!
 //! ```text
-//!   planes at the crossings -> where they meet -> planes there, a little to each side -> where these meet ...
-//!        A \   / B                 \ /                  \ /
-//!           \ /                     x                  q x q
+//!   planes at the crossings -> where they meet -> planes of the pieces there -> where these meet ... -> is it on the
+//!        A \   / B                 \ /                  \ /                      surface? then that is the feature;
+//!           \ /                     x                    x                       else go on with the piece that is nearer
 //! ```
 
 use super::qef::{Qef, dot};
@@ -27,8 +28,15 @@ pub const REACH: f64 = 2.5;
 /// least the second value, so that rounding does not decide which side answers.
 const BESIDE: [f64; 2] = [0.2, 1e-3];
 
-/// Rounds of asking. Flat sides need one, curved ones three.
+/// Rounds of asking beside a crease. Flat sides need one, curved ones three.
 const ROUNDS: usize = 5;
+
+/// Pieces that are followed, with a question each: two of three features need one, one in thirty more than two. Where
+/// more are needed the sides have many pieces, and it is better to ask for them.
+const PIECES: usize = 3;
+
+/// Steps to where pieces meet. Flat pieces need one, curved ones three.
+const PIECE_STEPS: usize = 6;
 
 /// Steps along gradients end at this distance, in voxels.
 const EXACTLY: f64 = 1e-6;
@@ -36,9 +44,9 @@ const EXACTLY: f64 = 1e-6;
 /// Steps along gradients.
 const STEPS: usize = 12;
 
-/// A place that moved by less than this in a round, in voxels, stays. The steps shrink quadratically, so what
+/// A place that moved by less than this in a step, in voxels, stays. The steps shrink quadratically, so what
 /// is left is far less.
-const STAYS: f64 = 5e-3;
+const STAYS: f64 = 1e-3;
 
 /// Planes meet nowhere when the square of the sine between them is below this: 2 degrees.
 const PARALLEL: f64 = 1e-3;
@@ -47,11 +55,13 @@ const PARALLEL: f64 = 1e-3;
 const ON_SURFACE: f64 = 1e-3;
 
 /// A plane near a feature.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Plane {
     /// Where it touches the surface or close to it.
     anchor: Point,
     normal: Point,
+    /// The piece of the surface that it belongs to.
+    piece: u32,
 }
 
 /// The most planes that meet in a point in general.
@@ -113,22 +123,31 @@ pub struct Asker<'a> {
     pub origin: Point,
     /// Voxel size.
     pub voxel: f64,
-    /// See [`Surface::at`].
-    pub hint: u32,
+    /// A piece near by; after a question the one that is closest. See [`Surface::at`].
+    pub piece: u32,
 }
 
 impl Asker<'_> {
     /// Distance in voxels and gradient at `local`.
     pub fn at(&mut self, local: Point) -> (f64, Point) {
-        let world = std::array::from_fn(|a| self.origin[a] + self.voxel * local[a]);
-        let (distance, gradient) = self.surface.at(world, &mut self.hint);
+        let (distance, gradient) = self.surface.at(self.world(local), &mut self.piece);
         (distance / self.voxel, gradient)
     }
 
     /// The plane at `local`, moved there along the gradient.
     fn plane(&mut self, local: Point) -> Plane {
         let (distance, normal) = self.at(local);
-        Plane { anchor: along(local, -distance, normal), normal }
+        Plane { anchor: along(local, -distance, normal), normal, piece: self.piece }
+    }
+
+    /// The plane of a piece at `local`, moved there along the gradient.
+    fn plane_of(&self, piece: u32, local: Point) -> Plane {
+        let (distance, normal) = self.surface.piece_at(self.world(local), piece);
+        Plane { anchor: along(local, -distance / self.voxel, normal), normal, piece }
+    }
+
+    fn world(&self, local: Point) -> Point {
+        std::array::from_fn(|a| self.origin[a] + self.voxel * local[a])
     }
 }
 
@@ -144,25 +163,25 @@ pub struct Feature {
 /// The unit normals of the sides of a feature, zero beyond the last one.
 pub type Normals = [[f32; 3]; MAX_PLANES];
 
-/// The samples of a sheet: points in the cell's coordinates, and unit normals.
+/// The samples of a sheet: points in the cell's coordinates, with unit normals and pieces.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Samples {
-    all: [(Point, Point); 12],
+    all: [Plane; 12],
     len: usize,
 }
 
 impl Samples {
     /// Adds a sample, at most twelve, if its normal is one.
     #[inline]
-    pub fn push(&mut self, point: Point, normal: Point) {
+    pub fn push(&mut self, anchor: Point, normal: Point, piece: u32) {
         // What is not a number has no length of one.
         if (dot(normal, normal) - 1.0).abs() < 1e-3 {
-            self.all[self.len] = (point, normal);
+            self.all[self.len] = Plane { anchor, normal, piece };
             self.len += 1;
         }
     }
 
-    fn slice(&self) -> &[(Point, Point)] {
+    fn slice(&self) -> &[Plane] {
         &self.all[..self.len]
     }
 
@@ -175,33 +194,32 @@ impl Samples {
     /// trapezoidal rule along the ways from the samples, with the mean normal at the end: exact for quadratic
     /// functions, where the tangent planes themselves are off by their curvature.
     pub fn height(&self, point: Point) -> (f64, Point) {
-        let sum = self.slice().iter().fold([0.0; 3], |sum, (_, normal)| along(sum, 1.0, *normal));
+        let sum = self.slice().iter().fold([0.0; 3], |sum, plane| along(sum, 1.0, plane.normal));
         let length = dot(sum, sum).sqrt();
         if length < f64::MIN_POSITIVE {
             return (0.0, sum);
         }
         let mean = sum.map(|x| x / length);
-        let rises =
-            self.slice().iter().map(|(at, n)| dot(along(*n, 1.0, mean), along(point, -1.0, *at)) / 2.0);
+        let rise = |p: &Plane| dot(along(p.normal, 1.0, mean), along(point, -1.0, p.anchor)) / 2.0;
+        let rises = self.slice().iter().map(rise);
         (rises.sum::<f64>() / self.len as f64, mean)
     }
 
     /// How far the farthest of their planes is from `point`.
     pub fn disagreement(&self, point: Point) -> f64 {
         let planes = self.slice().iter();
-        planes.map(|(at, normal)| dot(*normal, along(point, -1.0, *at)).abs()).fold(0.0, f64::max)
+        planes.map(|p| dot(p.normal, along(point, -1.0, p.anchor)).abs()).fold(0.0, f64::max)
     }
 }
 
 /// The sides of a crease or corner that the samples see: one sample for each, the one nearest to `near`. Fewer
 /// than two when the samples see one side only.
-fn sides(samples: &[(Point, Point)], near: Point) -> Planes {
-    let nothing = Plane { anchor: [0.0; 3], normal: [0.0; 3] };
-    let mut sides = Planes { planes: [nothing; MAX_PLANES], len: 0 };
-    let Some(&(_, first)) = samples.first() else { return sides };
+fn sides(samples: &[Plane], near: Point) -> Planes {
+    let mut sides = Planes { planes: [Plane::default(); MAX_PLANES], len: 0 };
+    let Some(&Plane { normal: first, .. }) = samples.first() else { return sides };
     let farthest = |from: &[Point]| {
         let nearest_cosine = |n: Point| from.iter().map(|&f| dot(f, n)).fold(f64::NEG_INFINITY, f64::max);
-        let all = samples.iter().map(|&(_, n)| (nearest_cosine(n), n));
+        let all = samples.iter().map(|p| (nearest_cosine(p.normal), p.normal));
         all.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(cosine, _)| *cosine < ONE_SIDE).map(|(_, n)| n)
     };
     let Some(a) = farthest(&[first]) else { return sides };
@@ -215,10 +233,10 @@ fn sides(samples: &[(Point, Point)], near: Point) -> Planes {
                 .enumerate()
                 .all(|(m, &other)| m == n || dot(other, normal) < dot(direction, normal))
         };
-        let own = samples.iter().filter(|(_, normal)| belongs(*normal));
-        let nearest = own.min_by(|p, q| distance2(p.0, near).total_cmp(&distance2(q.0, near)));
-        if let Some(&(anchor, normal)) = nearest {
-            sides = sides.with(Plane { anchor, normal }).expect("at most three");
+        let own = samples.iter().filter(|p| belongs(p.normal));
+        let nearest = own.min_by(|p, q| distance2(p.anchor, near).total_cmp(&distance2(q.anchor, near)));
+        if let Some(&plane) = nearest {
+            sides = sides.with(plane).expect("at most three");
         }
     }
     sides
@@ -243,8 +261,8 @@ pub fn feature(ask: &mut Asker<'_>, samples: &Samples, minimiser: Point, mean: P
 pub fn feature_between(ask: &mut Asker<'_>, at: impl Iterator<Item = Point>) -> Option<Point> {
     let mut samples = Samples::default();
     for p in at.take(12) {
-        let Plane { anchor, normal } = ask.plane(p);
-        samples.push(anchor, normal);
+        let Plane { anchor, normal, piece } = ask.plane(p);
+        samples.push(anchor, normal, piece);
     }
     let seen = sides(samples.slice(), [0.0; 3]);
     if seen.len < 2 {
@@ -274,8 +292,33 @@ pub fn nearest(ask: &mut Asker<'_>, from: Point) -> Option<Point> {
     is_within_reach(point).then_some(point)
 }
 
-/// Follows the planes to where they meet, until that is on the surface.
-fn settle(ask: &mut Asker<'_>, mut planes: Planes, mean: Point) -> Option<(Point, Planes)> {
+/// Follows the planes to where they meet on the surface: by the pieces that they are of, or, where these lead away, by
+/// what the surface has beside the place where they meet.
+fn settle(ask: &mut Asker<'_>, planes: Planes, mean: Point) -> Option<(Point, Planes)> {
+    by_pieces(ask, planes, mean).or_else(|| by_asking(ask, planes, mean))
+}
+
+/// Follows the pieces of the planes to where they meet, and takes others where the surface has nearer ones, until that is
+/// on the surface.
+fn by_pieces(ask: &mut Asker<'_>, mut planes: Planes, mean: Point) -> Option<(Point, Planes)> {
+    for _ in 0..PIECES {
+        let point = meet_pieces(ask, &mut planes, mean)?;
+        let (distance, normal) = ask.at(point);
+        if distance.abs() <= ON_SURFACE {
+            return Some((point, planes));
+        }
+        let cosine = |p: &Plane| dot(p.normal, normal);
+        let side = planes.planes[..planes.len].iter_mut().max_by(|a, b| cosine(a).total_cmp(&cosine(b)))?;
+        if cosine(side) <= ONE_SIDE || side.piece == ask.piece {
+            return None;
+        }
+        *side = Plane { anchor: along(point, -distance, normal), normal, piece: ask.piece };
+    }
+    None
+}
+
+/// Asks the surface beside the place where the planes meet, until that is on the surface.
+fn by_asking(ask: &mut Asker<'_>, mut planes: Planes, mean: Point) -> Option<(Point, Planes)> {
     let mut point = planes.meet(mean)?;
     let mut beside = BESIDE[0];
     for _ in 0..ROUNDS {
@@ -284,11 +327,10 @@ fn settle(ask: &mut Asker<'_>, mut planes: Planes, mean: Point) -> Option<(Point
         }
         for n in 0..planes.len {
             let Plane { anchor, .. } = planes.planes[n];
-            let back = std::array::from_fn(|a| anchor[a] - point[a]);
+            let back = along(anchor, -1.0, point);
             let length = dot(back, back).sqrt();
             let step = if length > beside { beside / length } else { 1.0 };
-            let q = along(point, step, back);
-            planes.planes[n] = ask.plane(q);
+            planes.planes[n] = ask.plane(along(point, step, back));
         }
         let next = planes.meet(mean)?;
         let moved = distance2(next, point).sqrt();
@@ -306,7 +348,7 @@ fn settle(ask: &mut Asker<'_>, mut planes: Planes, mean: Point) -> Option<(Point
         return Some((point, planes));
     }
     // A side that no crossing of the cell showed.
-    let third = Plane { anchor: along(point, -distance, normal), normal };
+    let third = Plane { anchor: along(point, -distance, normal), normal, piece: ask.piece };
     corner(ask, &planes, third, mean)
 }
 
@@ -322,6 +364,26 @@ fn corner(ask: &mut Asker<'_>, planes: &Planes, third: Plane, mean: Point) -> Op
     }
     let (distance, _) = ask.at(point);
     (distance.abs() <= ON_SURFACE).then_some((point, planes))
+}
+
+/// Where the pieces of some planes meet, as near to `mean` as they do. The planes become those of the pieces there.
+fn meet_pieces(ask: &Asker<'_>, planes: &mut Planes, mean: Point) -> Option<Point> {
+    let mut point = planes.meet(mean)?;
+    for _ in 0..PIECE_STEPS {
+        if !is_within_reach(point) {
+            return None;
+        }
+        for plane in &mut planes.planes[..planes.len] {
+            *plane = ask.plane_of(plane.piece, point);
+        }
+        let next = planes.meet(mean)?;
+        let moved = distance2(next, point);
+        point = next;
+        if moved < STAYS * STAYS {
+            break;
+        }
+    }
+    is_within_reach(point).then_some(point)
 }
 
 fn is_within_reach(point: Point) -> bool {

@@ -59,6 +59,13 @@ impl Features {
         Some(&self.all[(self.before[word] + below) as usize])
     }
 
+    /// Whether any of some vertices stands for a feature.
+    #[inline]
+    pub fn has_any(&self, vertices: impl IntoIterator<Item = u32>) -> bool {
+        let is_one = |v: u32| self.bits.get(v as usize >> 6).is_some_and(|word| word >> (v & 63) & 1 == 1);
+        vertices.into_iter().any(is_one)
+    }
+
     /// The sides of the features among the vertices of a polygon.
     #[inline]
     pub fn sides(&self, vertices: impl Iterator<Item = u32>) -> Sides {

@@ -23,9 +23,12 @@
 //! | `grid` | the lattice rounded to the output's precision, before any decision |
 //! | `cell`, `sheets` | the cube, and its 256 masks: pairs on faces, sheets, caps and their walls |
 //! | `numbering` | active cells and their vertices, numbered by ranks in bit masks |
-//! | `cells`, `qef`, `region`, `vertex` | the vertex of each sheet within its cell and its walls |
+//! | `cells`, `leaf_crossings`, `leaf_vertices` | all cells, leaf by leaf, with the crossings of their edges |
+//! | `smooth` | the vertices of cells that see one smooth side, several at a time |
+//! | `qef`, `region`, `vertex` | the vertex of any other sheet within its cell and its walls |
 //! | `surface`, `feature`, `features` | the surface's creases and corners, found and remembered |
 //! | `face_vertex` | vertices on faces where a connection would get in another sheet's way |
+//! | `leaf_cells`, `edge_polygon` | the cells and the polygon around each crossed edge |
 //! | `envelope`, `polygonize` | convex/concave analysis, and the triangles around an edge |
 //! | `output` | all polygons, collected to a mesh |
 //! | `order` | the finished mesh leaf by leaf, and the part that a slab owns |
@@ -40,12 +43,16 @@
 mod cell;
 mod cells;
 mod cut_times;
+mod edge_polygon;
 mod editor;
 mod envelope;
 mod face_vertex;
 mod feature;
 mod features;
 mod grid;
+mod leaf_cells;
+mod leaf_crossings;
+mod leaf_vertices;
 mod merge;
 mod numbering;
 mod order;
@@ -59,6 +66,7 @@ mod refine;
 mod region;
 mod rounds;
 mod sheets;
+mod smooth;
 mod statistics;
 mod surface;
 mod vertex;

@@ -64,20 +64,20 @@ impl Polygon {
 /// What is known of the surface around a crossed grid edge: its tangent plane at the crossing, and the sides of
 /// the creases that its cells see.
 #[derive(Clone, Copy, Debug)]
-pub struct Fit {
+pub struct Fit<'a> {
     /// The crossing, as it was given.
     pub point: [f64; 3],
     /// The unit normal there.
     pub normal: [f64; 3],
     /// The sides of creases nearby.
-    pub sides: Sides,
+    pub sides: &'a Sides,
     /// Distances from the sides, and from the plane, that differ by less are equal.
     pub tolerances: [f64; 2],
 }
 
-impl Fit {
+impl<'a> Fit<'a> {
     /// The surface at a crossing, on a lattice with the given voxel size.
-    pub fn new(point: [f64; 3], normal: [f64; 3], sides: Sides, voxel: f64) -> Fit {
+    pub fn new(point: [f64; 3], normal: [f64; 3], sides: &'a Sides, voxel: f64) -> Fit<'a> {
         Fit { point, normal, sides, tolerances: [SAME_AS_CURVED * voxel, SAME_DISTANCE * voxel] }
     }
 
@@ -136,7 +136,7 @@ pub enum CutMethod {
 pub fn polygonize(
     polygon: &Polygon,
     envelope: &Envelope,
-    fit: &Fit,
+    fit: &Fit<'_>,
     method: CutMethod,
     triangles: &mut Vec<[u32; 3]>,
 ) -> Cut {
@@ -161,7 +161,7 @@ fn is_good(envelope: &Envelope) -> impl Fn([[f64; 3]; 4]) -> bool {
 }
 
 /// Cuts a polygon with face vertices: good ears first, the rest as a quad or around the edge's vertex.
-fn ears(polygon: &Polygon, envelope: &Envelope, fit: &Fit, triangles: &mut Vec<[u32; 3]>) -> Cut {
+fn ears(polygon: &Polygon, envelope: &Envelope, fit: &Fit<'_>, triangles: &mut Vec<[u32; 3]>) -> Cut {
     let first = triangles.len();
     let mut rest = *polygon;
     while rest.len > 4 {
@@ -188,7 +188,7 @@ fn ears(polygon: &Polygon, envelope: &Envelope, fit: &Fit, triangles: &mut Vec<[
 /// The two triangles of the better legal diagonal of a quad; `None` without a legal one. `is_legal` judges
 /// the diagonal from the first to the third corner.
 #[inline]
-fn quad(polygon: &Polygon, fit: &Fit, is_legal: impl Fn([[f64; 3]; 4]) -> bool) -> Option<[[u32; 3]; 2]> {
+fn quad(polygon: &Polygon, fit: &Fit<'_>, is_legal: impl Fn([[f64; 3]; 4]) -> bool) -> Option<[[u32; 3]; 2]> {
     let corner = |i: usize| polygon.corners[i & 3];
     // The diagonal from corner i to corner i + 2.
     let diagonal = |i: usize| [corner(i).position, corner(i + 2).position];
@@ -232,7 +232,7 @@ mod tests {
             polygon.push(PolygonCorner { vertex, position });
         }
         let mut triangles = Vec::new();
-        let fit = Fit::new([0.0, 0.0, 0.5], normal, Sides::NONE, 1.0);
+        let fit = Fit::new([0.0, 0.0, 0.5], normal, &Sides::NONE, 1.0);
         (polygonize(&polygon, &ENVELOPE, &fit, CutMethod::ConvexConcave, &mut triangles), triangles)
     }
 

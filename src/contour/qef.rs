@@ -10,7 +10,7 @@ use crate::geom::sym3::Sym3;
 /// 3.6 degrees. Larger values blunt weaker creases (1e-2: 11 degrees, 1e-1: 35 degrees). Smaller ones
 /// place vertices by the noise of the normals: an error e of a tangent plane moves the minimiser along the
 /// weak direction by e / sqrt(ratio), 32 e here.
-const CUTOFF: f64 = 1e-3;
+pub const CUTOFF: f64 = 1e-3;
 
 /// Violations of a half-space up to this, in voxels, count as none while looking for a minimum: the
 /// rounding of a 3 x 3 solve with a condition of 1 / CUTOFF is about 1e-12.

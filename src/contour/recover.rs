@@ -90,7 +90,7 @@ pub fn recover(
             |leaf, patch| {
                 let tolerance = TOLERANCE;
                 let mut editor =
-                    Editor { patch, surface, grid, features, tolerance, trusting: true, hint: 0 };
+                    Editor { patch, surface, grid, features, tolerance, trusting: true, piece: 0 };
                 let done = editor.grant_all(&wishes[leaf.0 as usize], stage);
                 (editor.patch, (leaf, done))
             },

@@ -65,7 +65,7 @@ pub fn refine(
             },
             |leaf, patch| {
                 let mut editor =
-                    Editor { patch, surface, grid, features, tolerance, trusting: false, hint: 0 };
+                    Editor { patch, surface, grid, features, tolerance, trusting: false, piece: 0 };
                 let done = editor.refine(&numbers[leaf.0 as usize], is_last);
                 (editor.patch, (leaf, done))
             },

@@ -10,6 +10,7 @@ use crate::lattice::{Ijk, LEAF_DIM};
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};
 use rayon::prelude::*;
+use std::ops::RangeInclusive;
 
 type Point = [f64; 3];
 
@@ -39,6 +40,9 @@ pub struct LeafMesh {
     pub mesh: TriMesh,
     /// The number of the first triangle of each leaf, and the number of all at the end.
     pub ranges: Vec<usize>,
+    /// The lower node of the grid edge that each triangle lies around, as its number in the leaf; [`ANYWHERE`] once the
+    /// triangle was changed.
+    pub nodes: Vec<u16>,
     /// Triangles that were added later, by leaf.
     pub added: Vec<Vec<usize>>,
     /// Which vertices belong to which leaf: each to one.
@@ -46,6 +50,9 @@ pub struct LeafMesh {
     /// The vertices that are gone, in the order in which they went.
     pub gone: Vec<u32>,
 }
+
+/// Stands for the node of a triangle that no longer lies around its grid edge.
+pub const ANYWHERE: u16 = u16::MAX;
 
 /// The vertices of a triangle that is gone: patches are not made when vertices have numbers that large.
 pub const GONE: [u32; 3] = [u32::MAX; 3];
@@ -117,7 +124,11 @@ impl LeafMesh {
             if !around.meets(&bounds) {
                 continue;
             }
+            let nodes = NodesNear::new(cells.signs.origin(leaf), voxel, &bounds);
             for number in self.triangles(leaf) {
+                if !nodes.may_have(self.nodes[number]) {
+                    continue;
+                }
                 let vertices = self.mesh.triangles[number];
                 let corners = vertices.map(|v| self.mesh.vertices[v as usize]);
                 patch.add(PatchTriangle { number, vertices, corners, home: home as u8 });
@@ -140,6 +151,7 @@ impl LeafMesh {
         let (first_vertex, first_triangle) = (mesh.vertices.len(), mesh.triangles.len());
         mesh.vertices.resize(first_vertex + changes.new_vertices as usize, [0.0; 3]);
         mesh.triangles.resize(first_triangle + changes.new_triangles, [0; 3]);
+        self.nodes.resize(mesh.triangles.len(), ANYWHERE);
         self.added[leaf.0 as usize].extend(first_triangle..mesh.triangles.len());
         if changes.new_vertices > 0 {
             self.runs.push(VertexRun { leaf, numbers: first_vertex as u32..mesh.vertices.len() as u32 });
@@ -150,7 +162,9 @@ impl LeafMesh {
             mesh.vertices[vertex(number) as usize] = position;
         }
         for (number, vertices) in changes.triangles {
-            mesh.triangles[triangle(number)] = vertices.map_or(GONE, |v| v.map(vertex));
+            let number = triangle(number);
+            mesh.triangles[number] = vertices.map_or(GONE, |v| v.map(vertex));
+            self.nodes[number] = ANYWHERE;
         }
         self.gone.extend(changes.gone_vertices.into_iter().map(vertex));
     }
@@ -158,6 +172,40 @@ impl LeafMesh {
     /// The corners of a triangle.
     pub fn corners(&self, triangle: usize) -> [Point; 3] {
         self.mesh.corners(triangle)
+    }
+}
+
+/// The nodes of a leaf whose grid edges may have triangles in a box. Looking at a node is far cheaper than at the corners
+/// of its triangles, which lie anywhere in memory.
+struct NodesNear {
+    /// The x that are in question.
+    x: RangeInclusive<i32>,
+    /// A bit for each y and z that is.
+    yz: u64,
+}
+
+impl NodesNear {
+    /// Of the leaf at `origin`.
+    fn new(origin: Ijk, voxel: f64, bounds: &Bounds) -> NodesNear {
+        // The triangles around an edge lie in the cells around it: within a voxel of its lower node along each axis, but
+        // for the rounding of coordinates, an eighth of a voxel at most.
+        const WITHIN: f64 = 1.25;
+        let [x, y, z] = std::array::from_fn(|a| {
+            let local = |x: f64| x / voxel - f64::from(origin.0[a]);
+            let low = (local(bounds.lo[a]) - WITHIN).ceil().max(0.0) as i32;
+            let high = (local(bounds.hi[a]) + WITHIN).floor().min(f64::from(LEAF_DIM - 1)) as i32;
+            low..=high
+        });
+        let yz =
+            y.flat_map(|y| z.clone().map(move |z| 1u64 << (LEAF_DIM * y + z))).fold(0, |all, bit| all | bit);
+        NodesNear { x, yz }
+    }
+
+    /// Whether triangles of this node may be there.
+    #[inline]
+    fn may_have(&self, node: u16) -> bool {
+        let (x, yz) = (i32::from(node >> 6), node & 63);
+        node == ANYWHERE || self.yz >> yz & 1 == 1 && self.x.contains(&x)
     }
 }
 

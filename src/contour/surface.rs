@@ -17,8 +17,10 @@ pub trait Surface: Sync {
     fn creases(&self) -> Creases;
     /// The largest curvature of its sides, one over model units: away from concave creases, towards convex ones.
     fn curvature(&self) -> f64;
-    /// The signed distance of `p`, negative inside, in model units, and its unit gradient there. `hint` is
-    /// carried from one question to the next near it, for speed only; [`Crossing::hint`](crate::edge::Crossing)
-    /// to begin with.
-    fn at(&self, p: [f64; 3], hint: &mut u32) -> (f64, [f64; 3]);
+    /// The signed distance of `p`, negative inside, in model units, and its unit gradient there. `piece` is one near `p`,
+    /// for speed only: [`Crossing::triangle`](crate::edge::Crossing) to begin with, then the answer of the last question
+    /// near it. It becomes the piece that is the closest to `p`.
+    fn at(&self, p: [f64; 3], piece: &mut u32) -> (f64, [f64; 3]);
+    /// The same for a surface that `piece` makes alone, continued beyond the creases in which it ends.
+    fn piece_at(&self, p: [f64; 3], piece: u32) -> (f64, [f64; 3]);
 }

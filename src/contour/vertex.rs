@@ -27,7 +27,7 @@ const STEPS_TO_MIDDLE: i32 = 8;
 
 /// Planes that miss the minimiser by more than this, in voxels, do not meet: a side of the surface ends before.
 /// Spheres with a radius of 4 voxels have 0.04.
-const UNSURE: f64 = 0.035;
+pub const UNSURE: f64 = 0.035;
 
 /// Tangent planes of a sphere meet above it, by 1 / (6 r) voxels at a radius of r voxels and more in corners of
 /// cells. That is where the faces between the vertices, which cut through the sphere, are off the least on average:
@@ -67,13 +67,13 @@ pub fn place<'a>(
     let edges = case.sheets()[sheet].edges;
     let mut qef = Qef::default();
     let mut samples = Samples::default();
-    let mut hint = 0;
+    let mut piece = 0;
     for edge in edges.iter() {
-        let sample = crossing(edge);
-        let (point, normal) = (on_edge(edge, unit(sample.t)), sample.normal.map(f64::from));
+        let crossing = crossing(edge);
+        let (point, normal) = sample(edge, crossing);
         qef.add(point, normal);
-        samples.push(point, normal);
-        hint = sample.hint;
+        samples.push(point, normal, crossing.triangle);
+        piece = crossing.triangle;
     }
     let mut minimiser = qef.minimiser();
     let mut found = None;
@@ -82,7 +82,7 @@ pub fn place<'a>(
         let is_unsure = samples.disagreement(minimiser.point) > UNSURE;
         if is_feature || is_unsure {
             let origin = grid.ideal(cell, [0.0; 3]);
-            let mut ask = Asker { surface, origin, voxel: grid.voxel(), hint };
+            let mut ask = Asker { surface, origin, voxel: grid.voxel(), piece };
             if is_feature {
                 found = feature(&mut ask, &samples, minimiser.point, qef.mean());
             }
@@ -119,11 +119,10 @@ fn in_cell<'a>(
 ) -> ([f64; 3], Placement) {
     let edges = case.sheets()[sheet].edges;
     let margin = grid.margin();
-    if !case.has_several_sheets() {
-        let inside = |x: f64| (margin..=1.0 - margin).contains(&x);
-        if minimiser.point.iter().all(|&x| inside(x)) {
-            return (grid.round_ideal(cell, minimiser.point), Placement::Free);
-        }
+    if !case.has_several_sheets()
+        && let Some(position) = free(grid, cell, minimiser.point)
+    {
+        return (position, Placement::Free);
     }
     let region = Region::of_sheet(case, sheet, margin, 0.5 * margin);
     let allowed = Region::of_sheet(case, sheet, KEPT * margin, KEPT_AT_WALLS * margin);
@@ -166,6 +165,20 @@ fn start<'a>(
         |step: i32| grid.between_walls(cell, mix(mean, middle, f64::from(step) / f64::from(STEPS_TO_MIDDLE)));
     let found = (0..STEPS_TO_MIDDLE).map(position).find(|&p| fits(p));
     found.unwrap_or_else(|| position(STEPS_TO_MIDDLE))
+}
+
+/// A crossing as a sample of its sheet: the point in coordinates 0 to 1 of the cell, and the normal.
+#[inline]
+pub fn sample(edge: Edge, crossing: &Crossing) -> ([f64; 3], [f64; 3]) {
+    (on_edge(edge, unit(crossing.t)), crossing.normal.map(f64::from))
+}
+
+/// The position of a cell's minimiser, rounded, if that keeps the margin from the cell's walls.
+#[inline]
+pub fn free(grid: &Grid, cell: Ijk, point: [f64; 3]) -> Option<[f64; 3]> {
+    let margin = grid.margin();
+    let is_inside = point.iter().all(|x| (margin..=1.0 - margin).contains(x));
+    is_inside.then(|| grid.round_ideal(cell, point))
 }
 
 /// The point of an edge at position `t`, in coordinates 0 to 1 of the cell.

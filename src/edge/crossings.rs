@@ -121,8 +121,8 @@ pub struct Crossing {
     pub t: f64,
     /// Unit normal of the offset surface at the crossing, pointing out of the offset solid.
     pub normal: [f32; 3],
-    /// A triangle near the crossing, to start queries from; 0 where nobody knows.
-    pub hint: u32,
+    /// The triangle whose offset crosses there; 0 where nobody knows.
+    pub triangle: u32,
 }
 
 /// The crossings of all intersected edges, by [`EdgeId`].

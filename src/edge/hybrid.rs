@@ -29,7 +29,7 @@ pub(super) struct GridEdge<'a> {
     pub(super) candidates: Option<Candidates<'a>>,
     /// How it runs along its axis.
     pub(super) direction: Direction,
-    /// A triangle near it, if one is known.
+    /// A triangle near it.
     pub(super) hint: u32,
 }
 
@@ -49,7 +49,7 @@ impl GridEdge<'_> {
             Direction::Out => root.t,
             Direction::In => 1.0 - root.t,
         };
-        Crossing { t, normal: root.normal.as_vec3().to_array(), hint: self.hint }
+        Crossing { t, normal: root.normal.as_vec3().to_array(), triangle: root.triangle }
     }
 }
 
@@ -69,6 +69,8 @@ pub(super) struct Root {
     pub(super) t: f64,
     /// Unit normal, outward.
     pub(super) normal: DVec3,
+    /// The closest triangle there.
+    pub(super) triangle: u32,
 }
 
 /// One end of the interval that brackets the root.
@@ -198,14 +200,14 @@ impl Solver<'_> {
 
     pub(super) fn jump(&self, edge: &GridEdge, t: f64, statistics: &mut EdgeStatistics) -> Root {
         statistics.sign_jumps += 1;
-        Root { t, normal: (edge.outside - edge.inside) / self.voxel }
+        Root { t, normal: (edge.outside - edge.inside) / self.voxel, triangle: edge.hint }
     }
 
     pub(super) fn finish(&self, edge: &GridEdge, end: End) -> Root {
         // Directions to a closest point nearer than the root's own error mean nothing.
         let vanishing = 1e3 * TOLERANCE * self.voxel;
         let normal = self.distance.gradient(self.at(edge, end.t), &end.sample, vanishing);
-        Root { t: end.t, normal }
+        Root { t: end.t, normal, triangle: end.sample.triangle }
     }
 
     pub(super) fn is_root(&self, end: &End) -> bool {

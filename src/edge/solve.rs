@@ -137,7 +137,7 @@ pub fn solve_by(
 ) -> Result<(Crossings, EdgeStatistics), Cancelled> {
     let EdgeSettings { lattice, r, method, slab } = *settings;
     let solver = Solver { distance, r, voxel: lattice.voxel };
-    let mut samples = vec![Crossing { t: 0.0, normal: [0.0; 3], hint: 0 }; numbers.len()];
+    let mut samples = vec![Crossing { t: 0.0, normal: [0.0; 3], triangle: 0 }; numbers.len()];
     let mut rest: &mut [Crossing] = &mut samples;
     let mut tasks: Vec<(LeafId, &mut [Crossing])> = Vec::new();
     for leaf in signs.leaves() {
@@ -202,7 +202,7 @@ impl LeafSolver<'_> {
             .collect();
         edges.sort_by_key(|edge| edge.0);
         let origin = self.signs.origin(leaf);
-        let unsolved = Root { t: 0.0, normal: DVec3::ZERO };
+        let unsolved = Root { t: 0.0, normal: DVec3::ZERO, triangle: 0 };
         let mut together: Vec<GridEdge<'_>> = Vec::with_capacity(8);
         for block in edges.chunk_by_mut(|a, b| a.0 == b.0) {
             let near = lists.of_cell(Ijk::in_leaf(origin, block[0].2));

@@ -32,7 +32,7 @@ impl Surface for OffsetSurface<'_> {
         if self.r == 0.0 { 0.0 } else { 1.0 / self.r.abs() }
     }
 
-    fn at(&self, p: [f64; 3], hint: &mut u32) -> (f64, [f64; 3]) {
+    fn at(&self, p: [f64; 3], piece: &mut u32) -> (f64, [f64; 3]) {
         let near = self.lists.and_then(|lists| lists.at(p));
         let p = DVec3::from(p);
         let sample = match near {
@@ -40,9 +40,23 @@ impl Surface for OffsetSurface<'_> {
                 let hit = near.closest(self.distance.ssvh(), p);
                 self.distance.from_triangle(p, hit.triangle)
             }
-            None => self.distance.at(p, *hint),
+            None => self.distance.at(p, *piece),
         };
-        *hint = sample.triangle;
+        *piece = sample.triangle;
         (sample.distance - self.r, self.distance.gradient(p, &sample, self.vanishing).to_array())
+    }
+    fn piece_at(&self, p: [f64; 3], piece: u32) -> (f64, [f64; 3]) {
+        let p = DVec3::from(p);
+        let triangle = self.distance.ssvh().triangle(piece);
+        let from = p - triangle.closest(p).point;
+        let length = from.length();
+        if self.r == 0.0 || length <= self.vanishing {
+            // The surface is the triangle itself, continued as its plane.
+            let height = (p - triangle.corners[0]).dot(triangle.normal);
+            return (height - self.r, triangle.normal.to_array());
+        }
+        // On the side of the triangle that is looked at: which one that is depends on the neighbours only at r = 0.
+        let outward = from / length.copysign(self.r);
+        (length.copysign(self.r) - self.r, outward.to_array())
     }
 }

@@ -172,7 +172,7 @@ impl Edge<'_> {
     }
 
     fn crossing(&self, end: &End, normal: DVec3) -> Crossing {
-        Crossing { t: end.t, normal: normal.as_vec3().to_array(), hint: end.sample.triangle }
+        Crossing { t: end.t, normal: normal.as_vec3().to_array(), triangle: end.sample.triangle }
     }
 
     fn on_face(&self, end: End, part: Part) -> Crossing {

@@ -8,7 +8,7 @@ type Point = [f64; 3];
 pub struct Changes {
     /// New positions of vertices; the last one counts.
     pub moved: Vec<(u32, Point)>,
-    /// New vertices of triangles, `None` for those that are gone; the last ones count.
+    /// The vertices of triangles that have others, or moved ones; `None` for those that are gone. The last ones count.
     pub triangles: Vec<(usize, Option<[u32; 3]>)>,
     /// Vertices added.
     pub new_vertices: u32,

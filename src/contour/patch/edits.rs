@@ -22,6 +22,7 @@ impl Patch {
         }
         self.put(&star);
         self.changes.moved.push((vertex, to));
+        self.changes.triangles.extend(star.iter().map(|(_, t)| (t.number, Some(t.vertices))));
         true
     }
 

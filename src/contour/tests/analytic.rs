@@ -237,7 +237,7 @@ fn stops_when_cancelled_and_when_too_far() {
     let crossings = super::fields::crossings(&far, |_, _| crate::edge::Crossing {
         t: 0.5,
         normal: [1.0, 0.0, 0.0],
-        hint: 0,
+        triangle: 0,
     });
     let run = RunSettings::with_threads(1).unwrap();
     let result = contour(&far, &crossings, Lattice { voxel: 0.1 }, None, &settings, &run);

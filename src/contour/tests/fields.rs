@@ -51,6 +51,10 @@ pub fn crossings(signs: &SignField, mut rule: impl FnMut(Ijk, Axis) -> Crossing)
 pub trait Implicit {
     /// Value and normal at a world position.
     fn at(&self, p: [f64; 3]) -> (f64, [f64; 3]);
+    /// The piece of the surface that makes the value, where it has several.
+    fn piece(&self, _: [f64; 3]) -> u32 {
+        0
+    }
 }
 
 impl<F: Fn([f64; 3]) -> (f64, [f64; 3])> Implicit for F {
@@ -76,7 +80,8 @@ pub fn sample(surface: &impl Implicit, n: i32, voxel: f64) -> (SignField, Crossi
             if (value(node, axis, t).0 < 0.0) == low_inside { a = t } else { b = t }
         }
         let t = 0.5 * (a + b);
-        Crossing { t, normal: value(node, axis, t).1.map(|x| x as f32), hint: 0 }
+        let normal = value(node, axis, t).1.map(|x| x as f32);
+        Crossing { t, normal, triangle: surface.piece(world(node, axis, t)) }
     });
     (field, crossings)
 }

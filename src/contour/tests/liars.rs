@@ -22,14 +22,19 @@ impl Surface for Liar {
         0.1 / self.voxel
     }
 
-    fn at(&self, p: [f64; 3], hint: &mut u32) -> (f64, [f64; 3]) {
+    fn piece_at(&self, p: [f64; 3], piece: u32) -> (f64, [f64; 3]) {
+        let mut other = piece;
+        Liar { seed: self.seed ^ u64::from(piece % 7), ..*self }.at(p, &mut other)
+    }
+
+    fn at(&self, p: [f64; 3], piece: &mut u32) -> (f64, [f64; 3]) {
         // Coarse steps half of the time, so that neighbouring questions agree and features are found.
         let step = if self.seed.is_multiple_of(2) { self.voxel } else { 1e-9 * self.voxel };
         let key = p.iter().fold(self.seed, |k, &x| {
             k.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ ((x / step).floor() as i64 as u64)
         });
         let mut random = Random(key);
-        *hint = random.bits() as u32;
+        *piece = random.bits() as u32;
         let distance = match random.unit() {
             u if u < 0.01 => f64::NAN,
             u if u < 0.02 => f64::INFINITY,

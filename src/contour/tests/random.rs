@@ -22,7 +22,7 @@ fn nasty(random: &mut Random, signs: &SignField) -> Crossings {
             u if u < 0.8 * ends => 1e-6 * random.unit(),
             _ => random.unit(),
         };
-        Crossing { t, normal: random.direction().map(|x| x as f32), hint: 0 }
+        Crossing { t, normal: random.direction().map(|x| x as f32), triangle: 0 }
     })
 }
 
@@ -142,7 +142,7 @@ fn broken_crossings_still_give_a_closed_mesh() {
             Axis::Y => [0.0; 3],
             Axis::Z => [f32::MAX, f32::INFINITY, 1.0],
         };
-        Crossing { t: bad, normal, hint: 0 }
+        Crossing { t: bad, normal, triangle: 0 }
     });
     let (mesh, _) = run(&(field, crossings), 1.0, Precision::F32, 2);
     assert!(audit(&mesh).is_sound());

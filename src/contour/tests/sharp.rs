@@ -1,6 +1,6 @@
 //! Creases and corners of polyhedra, given as surfaces to ask.
 
-use super::fields::{Random, run_with, sample};
+use super::fields::{Implicit, Random, run_with, sample};
 use crate::contour::{ContourStatistics, Creases, Precision, Surface};
 use crate::mesh::TriMesh;
 use crate::verify::tests::audit::audit;
@@ -14,11 +14,18 @@ struct Polyhedron {
 
 impl Polyhedron {
     fn value(&self, p: [f64; 3]) -> (f64, [f64; 3]) {
-        let p = DVec3::from(p);
-        let heights = self.planes.iter().map(|&(n, c)| (n.dot(p) - c, n));
-        let (height, normal) = heights.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
-        let sign = if self.is_hollow { -1.0 } else { 1.0 };
-        (sign * height, (sign * normal).to_array())
+        self.piece_at(p, self.piece(p))
+    }
+}
+
+impl Implicit for Polyhedron {
+    fn at(&self, p: [f64; 3]) -> (f64, [f64; 3]) {
+        self.value(p)
+    }
+
+    fn piece(&self, p: [f64; 3]) -> u32 {
+        let heights = self.planes.iter().map(|(n, c)| n.dot(DVec3::from(p)) - c);
+        (0..).zip(heights).max_by(|a, b| a.1.total_cmp(&b.1)).unwrap().0
     }
 }
 
@@ -31,8 +38,15 @@ impl Surface for Polyhedron {
         0.0
     }
 
-    fn at(&self, p: [f64; 3], _: &mut u32) -> (f64, [f64; 3]) {
-        self.value(p)
+    fn at(&self, p: [f64; 3], piece: &mut u32) -> (f64, [f64; 3]) {
+        *piece = self.piece(p);
+        self.piece_at(p, *piece)
+    }
+
+    fn piece_at(&self, p: [f64; 3], piece: u32) -> (f64, [f64; 3]) {
+        let (normal, offset) = self.planes[piece as usize];
+        let sign = if self.is_hollow { -1.0 } else { 1.0 };
+        (sign * (normal.dot(DVec3::from(p)) - offset), (sign * normal).to_array())
     }
 }
 
@@ -98,7 +112,7 @@ fn contoured(shape: &Shape, is_hollow: bool, random: &mut Random) -> Found {
     let place = |p: DVec3| turn * p + shift;
     let plane = |&(n, at): &(DVec3, usize)| (turn * n, (turn * n).dot(place(shape.corners[at])));
     let polyhedron = Polyhedron { planes: shape.faces.iter().map(plane).collect(), is_hollow };
-    let field = sample(&|p| polyhedron.value(p), 14, 1.0);
+    let field = sample(&polyhedron, 14, 1.0);
     let (mesh, statistics) = run_with(&field, 1.0, (Precision::F64, None), 2, &polyhedron);
     assert!(audit(&mesh).is_sound());
     let corners = shape.corners.iter().map(|&c| {

@@ -1,0 +1,154 @@
+//! The polygon around each crossed grid edge: the vertices of the four cells around it, and face vertices between them.
+
+use super::cell::Edge;
+use super::cells::Cells;
+use super::envelope::Envelope;
+use super::face_vertex::FaceVertices;
+use super::features::Sides;
+use super::leaf_cells::LeafCells;
+use super::polygonize::{Fit, Polygon, PolygonCorner};
+use crate::band::{Axis, Ijk, LEAF_DIM, LeafId};
+use crate::edge::EdgeId;
+
+/// The polygon around a crossed edge, and what decides how it is cut.
+#[derive(Clone, Copy, Debug)]
+pub struct EdgePolygon<'a> {
+    /// The cell and face vertices around the edge.
+    pub polygon: Polygon,
+    /// The edge's envelope.
+    pub envelope: Envelope,
+    /// The surface at the crossing.
+    pub fit: Fit<'a>,
+    /// See [`Crossing::triangle`](crate::edge::Crossing).
+    pub piece: u32,
+    /// The edge's lower node.
+    pub node: Ijk,
+    /// The same, as its number in the leaf.
+    pub number: u16,
+    /// The crossing, in voxels from that node.
+    pub along: (Axis, f64),
+}
+
+/// Hands the polygons around the crossed edges that start in `leaf` to `visit`, in the order of the edges.
+#[inline]
+pub fn for_polygons(
+    cells: &Cells<'_>,
+    faces: &FaceVertices,
+    vertices: &[[f64; 3]],
+    leaf: LeafId,
+    mut visit: impl FnMut(EdgePolygon<'_>),
+) {
+    let numbers = &cells.crossings.numbers;
+    if numbers.range(leaf).is_empty() {
+        return;
+    }
+    let grid = &cells.grid;
+    let inside = cells.signs.inside(leaf);
+    let origin = cells.signs.origin(leaf);
+    let around = LeafCells::new(cells, faces, leaf);
+    // The planes of the leaf's nodes, and the next ones.
+    let planes: [[f64; LEAF_DIM as usize + 1]; 3] =
+        std::array::from_fn(|a| std::array::from_fn(|i| grid.plane(origin.0[a] + i as i32)));
+    let at = |local: [i32; 3]| std::array::from_fn(|a| planes[a][local[a] as usize]);
+    for (id, (axis, number)) in numbers.range(leaf).map(EdgeId).zip(numbers.in_leaf(leaf)) {
+        let local = Ijk::in_leaf(Ijk::default(), number);
+        if axis != Axis::X && is_at_cut(cells, leaf, local) {
+            continue;
+        }
+        let node = origin + local;
+        let low_is_inside = inside[number >> 6] >> (number & 63) & 1 == 1;
+        let ends = [at(local.0), at(local.next(axis).0)];
+        let (outside, envelope) = if low_is_inside {
+            (End::High, Envelope { above: ends[1], below: ends[0] })
+        } else {
+            (End::Low, Envelope { above: ends[0], below: ends[1] })
+        };
+        let polygon = polygon(&around, vertices, local, axis, outside);
+        let sample = cells.crossings.sample(id);
+        let point = grid.ideal(node, on_axis(axis, sample.t));
+        let corners = || polygon.corners().iter().map(|c| c.vertex);
+        // Most polygons are near no feature, and sides are large.
+        let found;
+        let sides = if cells.features.has_any(corners()) {
+            found = cells.features.sides(corners());
+            &found
+        } else {
+            &Sides::NONE
+        };
+        let fit = Fit::new(point, sample.normal.map(f64::from), sides, grid.voxel());
+        visit(EdgePolygon {
+            polygon,
+            envelope,
+            fit,
+            piece: sample.triangle,
+            node,
+            number: number as u16,
+            along: (axis, sample.t),
+        });
+    }
+}
+
+/// Whether not all cells around the edges across x from node `local` of `leaf` are there, since the field is cut off.
+fn is_at_cut(cells: &Cells<'_>, leaf: LeafId, local: Ijk) -> bool {
+    const LAST: i32 = LEAF_DIM - 1;
+    match local.0[0] {
+        0 => cells.signs.is_cut(leaf, -1),
+        LAST => cells.signs.is_cut(leaf, 1),
+        _ => false,
+    }
+}
+
+/// The offset `t` along `axis`.
+pub fn on_axis(axis: Axis, t: f64) -> [f64; 3] {
+    let mut along = [0.0; 3];
+    along[axis as usize] = t;
+    along
+}
+
+/// An end of a grid edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum End {
+    Low,
+    High,
+}
+
+/// The cells around an edge along an axis as offsets (0 or -1) in the other two axes (u, v), counter-clockwise
+/// seen from the upper end.
+const AROUND: [[i32; 2]; 4] = [[0, 0], [-1, 0], [-1, -1], [0, -1]];
+
+/// Between cell i and cell i + 1 around an edge: the lower one of the two, and whether the next one follows
+/// along u (0) or v (1).
+const BETWEEN: [(usize, usize); 4] = [(1, 0), (2, 1), (2, 0), (3, 1)];
+
+/// The polygon around the edge from node `local` of a leaf along `axis`, counter-clockwise seen from the
+/// end that is outside.
+#[inline]
+fn polygon(cells: &LeafCells<'_>, vertices: &[[f64; 3]], local: Ijk, axis: Axis, outside: End) -> Polygon {
+    let (u, v) = axis.others();
+    let around = AROUND.map(|[du, dv]| {
+        let mut at = local.0;
+        at[u as usize] += du;
+        at[v as usize] += dv;
+        (at, Edge::new(axis, -du as u8, -dv as u8))
+    });
+    let corner = |vertex: u32| PolygonCorner { vertex, position: vertices[vertex as usize] };
+    let cell_vertex = |i: usize| corner(cells.vertex(around[i].0, around[i].1));
+    let face_vertex = |i: usize| {
+        let (lower, along) = BETWEEN[i];
+        let (at, edge) = around[lower];
+        cells.face_vertex(at, [u, v][along], edge).map(corner)
+    };
+    let mut polygon = Polygon::default();
+    for i in 0..4 {
+        let (cell, face) = match outside {
+            End::High => (i, i),
+            // Backwards: 0, 3, 2, 1, with the face between cells i and i + 1 before cell i.
+            End::Low => ((4 - i) % 4, 3 - i),
+        };
+        polygon.push(cell_vertex(cell));
+        if let Some(corner) = face_vertex(face) {
+            polygon.push(corner);
+        }
+    }
+    polygon
+}

@@ -1,0 +1,101 @@
+//! The crossings of the edges of a leaf's cells, in a plain array: each crossing is asked for by up to four cells.
+
+use super::cell::Edge;
+use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, LeafMask, SignField};
+use crate::edge::{Crossing, Crossings, EdgeId, bits};
+
+/// Nodes along each axis: those of the leaf, and the first ones of the next.
+const SIDE: usize = LEAF_DIM as usize + 1;
+
+/// The edges of one axis.
+const EDGES: usize = SIDE * SIDE * SIDE;
+
+/// The crossings of all edges of a leaf's cells.
+pub struct LeafCrossings<'a> {
+    samples: &'a [Crossing],
+    /// By axis and lower node, z fastest. Only those of crossed edges mean something.
+    numbers: [u32; 3 * EDGES],
+}
+
+/// The place of a node in the array of an axis, from its coordinates in the leaf, 0 to 8 each.
+#[inline]
+const fn place([x, y, z]: [i32; 3]) -> usize {
+    (x as usize * SIDE + y as usize) * SIDE + z as usize
+}
+
+/// Where the edges of a cell are, from the place of its lowest node.
+const OF_CELL: [usize; 12] = {
+    let mut places = [0; 12];
+    let mut n = 0;
+    while n < 12 {
+        let axis = Axis::ALL[n / 4];
+        let edge = Edge::new(axis, n as u8 & 1, n as u8 >> 1 & 1);
+        places[n] = axis as usize * EDGES + place(edge.low().offset());
+        n += 1;
+    }
+    places
+};
+
+impl<'a> LeafCrossings<'a> {
+    /// Those of the cells of `leaf`.
+    pub fn new(signs: &SignField, crossings: &'a Crossings, leaf: LeafId) -> LeafCrossings<'a> {
+        let numbers = &crossings.numbers;
+        let mut around = LeafCrossings { samples: &crossings.samples, numbers: [u32::MAX; 3 * EDGES] };
+        for n in 0..8 {
+            let delta = [n >> 2, n >> 1 & 1, n & 1];
+            let Some(other) = signs.neighbour(leaf, delta) else { continue };
+            for axis in Axis::ALL.into_iter().filter(|&axis| delta[axis as usize] == 0) {
+                let wanted = first_layers(numbers.mask(other, axis), delta);
+                for number in bits(&wanted) {
+                    let EdgeId(id) = numbers.get(other, axis, number).expect("it is in the mask");
+                    let local = Ijk::in_leaf(Ijk(delta.map(|d| LEAF_DIM * d)), number);
+                    around.numbers[axis as usize * EDGES + place(local.0)] = id;
+                }
+            }
+        }
+        around
+    }
+
+    /// The crossing of an edge of the cell at `local`, 0 to 7 each. The edge must be crossed.
+    #[inline]
+    pub fn of_cell(&self, local: [i32; 3], edge: Edge) -> &'a Crossing {
+        &self.samples[self.numbers[place(local) + OF_CELL[edge.index()]] as usize]
+    }
+}
+
+/// The bits of a mask in the first layers along the axes in which `delta` is 1.
+fn first_layers(mask: &LeafMask, [x, y, z]: [i32; 3]) -> LeafMask {
+    const Y_FIRST: u64 = 0xff;
+    const Z_FIRST: u64 = 0x0101_0101_0101_0101;
+    let rows = if y == 0 { !0 } else { Y_FIRST } & if z == 0 { !0 } else { Z_FIRST };
+    std::array::from_fn(|n| if x == 0 || n == 0 { mask[n] & rows } else { 0 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn first_layers_are_those_with_a_zero() {
+        for n in 0..8i32 {
+            let delta = [n >> 2, n >> 1 & 1, n & 1];
+            let kept = first_layers(&[!0; 8], delta);
+            let found: Vec<usize> = bits(&kept).collect();
+            let is_first = |&n: &usize| {
+                let local = Ijk::in_leaf(Ijk::default(), n).0;
+                (0..3).all(|a| delta[a] == 0 || local[a] == 0)
+            };
+            assert_eq!(found, (0..512).filter(is_first).collect::<Vec<_>>(), "{delta:?}");
+        }
+    }
+
+    #[test]
+    fn edges_of_a_cell_start_at_its_corners() {
+        for edge in Edge::all() {
+            let [x, y, z] = edge.low().offset();
+            let axis = edge.axis() as usize;
+            assert_eq!(OF_CELL[edge.index()], axis * EDGES + place([x, y, z]), "{edge:?}");
+            assert!(place([7 + x, 7 + y, 7 + z]) < EDGES);
+        }
+    }
+}

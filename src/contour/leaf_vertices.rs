@@ -1,0 +1,136 @@
+//! The vertices of the cells of one leaf.
+
+use super::ContourStatistics;
+use super::cells::{CellCase, Cells};
+use super::feature::Normals;
+use super::features::FeatureVertex;
+use super::leaf_crossings::LeafCrossings;
+use super::numbering::{CornerSigns, constant_case};
+use super::recover::Wish;
+use super::sheets::{Case, CaseTable};
+use super::smooth::{Batch, LANES};
+use super::vertex::{self, Placement, sample};
+use crate::band::{Ijk, LeafId};
+use crate::edge::bits;
+
+/// What is found of a leaf's cells besides the positions of their vertices.
+#[derive(Debug, Default)]
+pub struct LeafVertices {
+    /// Vertices that ought to be elsewhere.
+    pub wishes: Vec<Wish>,
+    /// Vertices on creases and corners.
+    pub features: Vec<FeatureVertex>,
+    /// Counts of cells and vertices by kind.
+    pub counts: ContourStatistics,
+}
+
+/// A cell that waits for its vertices.
+#[derive(Clone, Copy)]
+struct Waiting {
+    case: &'static Case,
+    /// In nodes from the leaf's origin.
+    local: Ijk,
+    /// The number of its first vertex in the leaf.
+    first: usize,
+}
+
+/// The cells of a leaf on their way to vertices.
+struct Placer<'a> {
+    cells: &'a Cells<'a>,
+    leaf: LeafId,
+    crossings: LeafCrossings<'a>,
+    vertices: &'a mut [[f64; 3]],
+    batch: Batch,
+    waiting: [Option<Waiting>; LANES],
+    found: LeafVertices,
+}
+
+impl LeafVertices {
+    /// Fills in the cases and the vertices of the cells of one leaf.
+    pub fn place(
+        cells: &Cells<'_>,
+        leaf: LeafId,
+        cases: &mut [CellCase],
+        vertices: &mut [[f64; 3]],
+    ) -> LeafVertices {
+        let counts = ContourStatistics { cells: cases.len() as u64, ..Default::default() };
+        let found = LeafVertices { counts, ..LeafVertices::default() };
+        if cases.is_empty() {
+            return found;
+        }
+        let Some(corners) = CornerSigns::new(cells.signs, leaf) else { return found };
+        let crossings = LeafCrossings::new(cells.signs, cells.crossings, leaf);
+        let table = CaseTable::get();
+        let first_vertex = cells.numbers.vertex_range(leaf).start as u32;
+        let (batch, waiting) = (Batch::default(), [None; LANES]);
+        let mut placer = Placer { cells, leaf, crossings, vertices, batch, waiting, found };
+        let mut first = 0;
+        for (cell, number) in cases.iter_mut().zip(bits(cells.numbers.active(leaf))) {
+            let id = constant_case(table, corners.mask(number));
+            *cell = CellCase { first_vertex: first_vertex + first as u32, case: id };
+            let case = table.case(id);
+            placer.add(Waiting { case, local: Ijk::in_leaf(Ijk::default(), number), first });
+            first += case.sheets().len();
+        }
+        placer.finish();
+        placer.found
+    }
+}
+
+impl Placer<'_> {
+    /// Takes the next cell.
+    #[inline]
+    fn add(&mut self, cell: Waiting) {
+        if let [sheet] = cell.case.sheets() {
+            let samples = sheet.edges.iter().map(|edge| {
+                let crossing = self.crossings.of_cell(cell.local.0, edge);
+                sample(edge, crossing)
+            });
+            self.waiting[self.batch.len()] = Some(cell);
+            self.batch.push(samples);
+            if self.batch.len() == LANES {
+                self.finish();
+            }
+        } else {
+            // Vertices are numbered in the order of their cells, and features found in that order.
+            self.finish();
+            self.found.counts.several_sheets += 1;
+            for sheet in 0..cell.case.sheets().len() {
+                self.place_one(cell, sheet);
+            }
+        }
+    }
+
+    /// Places the vertices of all cells that wait.
+    fn finish(&mut self) {
+        let solved = self.batch.solve();
+        for n in 0..LANES {
+            let Some(cell) = self.waiting[n].take() else { break };
+            let at = self.cells.signs.origin(self.leaf) + cell.local;
+            let smooth = solved.smooth(n).and_then(|point| vertex::free(&self.cells.grid, at, point));
+            match smooth {
+                Some(position) => self.vertices[cell.first] = position,
+                None => self.place_one(cell, 0),
+            }
+        }
+    }
+
+    /// Places the vertex of a sheet by itself.
+    fn place_one(&mut self, Waiting { case, local, first }: Waiting, sheet: usize) {
+        let Cells { signs, grid, numbers, surface, .. } = self.cells;
+        let at = signs.origin(self.leaf) + local;
+        let crossing = |edge| self.crossings.of_cell(local.0, edge);
+        let placed = vertex::place(grid, at, case, sheet, crossing, *surface);
+        let number = first + sheet;
+        self.vertices[number] = placed.position;
+        self.found.counts.clamped += u64::from(placed.placement == Placement::Clamped);
+        let Some(feature) = placed.feature else { return };
+        let vertex = (numbers.vertex_range(self.leaf).start + number) as u32;
+        self.found.features.push(FeatureVertex { vertex, feature });
+        if placed.placement == Placement::Clamped {
+            self.found.wishes.push(Wish { vertex, place: Some(feature.point) });
+        } else if feature.normals == Normals::default() {
+            self.found.wishes.push(Wish { vertex, place: None });
+        }
+    }
+}
