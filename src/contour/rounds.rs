@@ -60,9 +60,14 @@ pub const GONE: [u32; 3] = [u32::MAX; 3];
 impl LeafMesh {
     /// The numbers of the triangles of a leaf.
     pub fn triangles(&self, leaf: LeafId) -> impl Iterator<Item = usize> + '_ {
+        self.numbers(leaf).filter(|&t| self.mesh.triangles[t] != GONE)
+    }
+
+    /// The same, with those that are gone.
+    #[inline]
+    fn numbers(&self, leaf: LeafId) -> impl Iterator<Item = usize> + '_ {
         let n = leaf.0 as usize;
-        let all = (self.ranges[n]..self.ranges[n + 1]).chain(self.added[n].iter().copied());
-        all.filter(|&t| self.mesh.triangles[t] != GONE)
+        (self.ranges[n]..self.ranges[n + 1]).chain(self.added[n].iter().copied())
     }
 
     /// Has `work` change the patches around the leaves that `places` gives points for, each by itself. The patch of
@@ -125,11 +130,11 @@ impl LeafMesh {
                 continue;
             }
             let nodes = NodesNear::new(cells.signs.origin(leaf), voxel, &bounds);
-            for number in self.triangles(leaf) {
-                if !nodes.may_have(self.nodes[number]) {
+            for number in self.numbers(leaf).filter(|&n| nodes.may_have(self.nodes[n])) {
+                let vertices = self.mesh.triangles[number];
+                if vertices == GONE {
                     continue;
                 }
-                let vertices = self.mesh.triangles[number];
                 let corners = vertices.map(|v| self.mesh.vertices[v as usize]);
                 patch.add(PatchTriangle { number, vertices, corners, home: home as u8 });
             }
