@@ -8,7 +8,7 @@ use super::features::Sides;
 use super::leaf_cells::LeafCells;
 use super::polygonize::{Fit, Polygon, PolygonCorner};
 use crate::band::{Axis, Ijk, LEAF_DIM, LeafId};
-use crate::edge::EdgeId;
+use crate::edge::{EdgeId, bits};
 
 /// The polygon around a crossed edge, and what decides how it is cut.
 #[derive(Clone, Copy, Debug)]
@@ -50,41 +50,37 @@ pub fn for_polygons(
     let planes: [[f64; LEAF_DIM as usize + 1]; 3] =
         std::array::from_fn(|a| std::array::from_fn(|i| grid.plane(origin.0[a] + i as i32)));
     let at = |local: [i32; 3]| std::array::from_fn(|a| planes[a][local[a] as usize]);
-    for (id, (axis, number)) in numbers.range(leaf).map(EdgeId).zip(numbers.in_leaf(leaf)) {
-        let local = Ijk::in_leaf(Ijk::default(), number);
-        if axis != Axis::X && is_at_cut(cells, leaf, local) {
-            continue;
+    let mut ids = numbers.range(leaf).map(EdgeId);
+    for axis in Axis::ALL {
+        for (number, id) in bits(numbers.mask(leaf, axis)).zip(&mut ids) {
+            let local = Ijk::in_leaf(Ijk::default(), number);
+            if axis != Axis::X && is_at_cut(cells, leaf, local) {
+                continue;
+            }
+            let node = origin + local;
+            let low_is_inside = inside[number >> 6] >> (number & 63) & 1 == 1;
+            let ends = [at(local.0), at(local.next(axis).0)];
+            let (outside, envelope) = if low_is_inside {
+                (End::High, Envelope { above: ends[1], below: ends[0] })
+            } else {
+                (End::Low, Envelope { above: ends[0], below: ends[1] })
+            };
+            let polygon = polygon(&around, vertices, local, axis, outside);
+            let sample = cells.crossings.sample(id);
+            let point = grid.ideal(node, on_axis(axis, sample.t));
+            let corners = || polygon.corners().iter().map(|c| c.vertex);
+            // Most polygons are near no feature, and sides are large.
+            let found;
+            let sides = if cells.features.has_any(corners()) {
+                found = cells.features.sides(corners());
+                &found
+            } else {
+                &Sides::NONE
+            };
+            let fit = Fit::new(point, sample.normal.map(f64::from), sides, grid.voxel());
+            let (piece, number) = (sample.triangle, number as u16);
+            visit(EdgePolygon { polygon, envelope, fit, piece, node, number, along: (axis, sample.t) });
         }
-        let node = origin + local;
-        let low_is_inside = inside[number >> 6] >> (number & 63) & 1 == 1;
-        let ends = [at(local.0), at(local.next(axis).0)];
-        let (outside, envelope) = if low_is_inside {
-            (End::High, Envelope { above: ends[1], below: ends[0] })
-        } else {
-            (End::Low, Envelope { above: ends[0], below: ends[1] })
-        };
-        let polygon = polygon(&around, vertices, local, axis, outside);
-        let sample = cells.crossings.sample(id);
-        let point = grid.ideal(node, on_axis(axis, sample.t));
-        let corners = || polygon.corners().iter().map(|c| c.vertex);
-        // Most polygons are near no feature, and sides are large.
-        let found;
-        let sides = if cells.features.has_any(corners()) {
-            found = cells.features.sides(corners());
-            &found
-        } else {
-            &Sides::NONE
-        };
-        let fit = Fit::new(point, sample.normal.map(f64::from), sides, grid.voxel());
-        visit(EdgePolygon {
-            polygon,
-            envelope,
-            fit,
-            piece: sample.triangle,
-            node,
-            number: number as u16,
-            along: (axis, sample.t),
-        });
     }
 }
 
@@ -138,6 +134,13 @@ fn polygon(cells: &LeafCells<'_>, vertices: &[[f64; 3]], local: Ijk, axis: Axis,
         let (at, edge) = around[lower];
         cells.face_vertex(at, [u, v][along], edge).map(corner)
     };
+    if !cells.have_face_vertices() {
+        let [a, b, c, d] = [0, 1, 2, 3].map(cell_vertex);
+        return match outside {
+            End::High => Polygon::quad([a, b, c, d]),
+            End::Low => Polygon::quad([a, d, c, b]),
+        };
+    }
     let mut polygon = Polygon::default();
     for i in 0..4 {
         let (cell, face) = match outside {

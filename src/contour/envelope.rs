@@ -11,7 +11,7 @@
 //! of the two corners that it cuts off is concave (Propositions 2 and 3). By Remark 10 opposite
 //! corners are never both concave, and with two concave corners side by side no diagonal is left (Remark 11).
 
-use crate::geom::predicates::orient3d;
+use crate::geom::predicates::{are_apart, orient3d};
 
 /// The ends of a crossed grid edge.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +26,7 @@ impl Envelope {
     /// Whether the triangle abc is good: strictly between the two ends, counter-clockwise seen from v+.
     #[inline]
     pub fn is_good(&self, a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> bool {
-        orient3d(a, b, c, self.above) > 0.0 && orient3d(a, b, c, self.below) < 0.0
+        are_apart([a, b, c], self.above, self.below)
     }
 
     /// Whether the side ab turns counter-clockwise around the edge by less than half a turn, so that the

@@ -62,6 +62,12 @@ impl<'a> LeafCells<'a> {
         self.cases[place(local)].vertex(self.table, edge)
     }
 
+    /// Whether there can be face vertices on these cells.
+    #[inline]
+    pub fn have_face_vertices(&self) -> bool {
+        self.faces.is_some()
+    }
+
     /// The number of the face vertex between the cell at `local` and the next one along `axis`, on the pair with the
     /// crossing of `edge`, if there is one.
     #[inline]

@@ -41,23 +41,48 @@ impl LeafMesh {
     /// The mesh without what is gone, leaf by leaf.
     pub fn into_ordered(mut self) -> OrderedMesh {
         self.gone.sort_unstable();
-        // Stable: cell vertices, face vertices, edge vertices, then those that were added.
-        self.runs.sort_by_key(|run| run.leaf);
         let leaves = self.ranges.len() - 1;
-        let mut vertices = Vec::with_capacity(self.mesh.vertices.len() - self.gone.len());
-        let mut numbers = vec![0; self.mesh.vertices.len()];
+        // Runs follow each other in the order in which their vertices were made.
+        let gone_in = |run: &VertexRun| {
+            let below = |v: u32| self.gone.partition_point(|&g| g < v);
+            &self.gone[below(run.numbers.start)..below(run.numbers.end)]
+        };
+        let left = |run: &VertexRun| run.numbers.len() - gone_in(run).len();
+        // Stable: cell vertices, face vertices, edge vertices, then those that were added.
+        let mut by_leaf: Vec<usize> = (0..self.runs.len()).collect();
+        by_leaf.sort_by_key(|&n| self.runs[n].leaf);
+        let mut starts = vec![0; self.runs.len()];
         let mut firsts = Vec::with_capacity(leaves + 1);
-        for VertexRun { leaf, numbers: run } in &self.runs {
-            firsts.resize(firsts.len().max(leaf.0 as usize + 1), vertices.len());
-            let mut gone = self.gone[self.gone.partition_point(|&v| v < run.start)..].iter().peekable();
-            for old in run.clone() {
-                if gone.next_if_eq(&&old).is_none() {
-                    numbers[old as usize] = vertices.len() as u32;
-                    vertices.push(self.mesh.vertices[old as usize]);
-                }
-            }
+        let mut next = 0;
+        for &n in &by_leaf {
+            firsts.resize(firsts.len().max(self.runs[n].leaf.0 as usize + 1), next);
+            starts[n] = next;
+            next += left(&self.runs[n]);
         }
-        firsts.resize(leaves + 1, vertices.len());
+        firsts.resize(leaves + 1, next);
+        let mut numbers = vec![0; self.mesh.vertices.len()];
+        let parts = super::cells::split(&mut numbers, self.runs.iter().map(|run| run.numbers.len()));
+        parts.into_par_iter().zip(&self.runs).zip(&starts).with_min_len(64).for_each(
+            |((part, run), &start)| {
+                let mut gone = gone_in(run).iter().peekable();
+                let mut next = start as u32;
+                for (number, old) in part.iter_mut().zip(run.numbers.clone()) {
+                    if gone.next_if_eq(&&old).is_none() {
+                        *number = next;
+                        next += 1;
+                    }
+                }
+            },
+        );
+        let mut vertices = vec![[0.0; 3]; next];
+        let parts = super::cells::split(&mut vertices, by_leaf.iter().map(|&n| left(&self.runs[n])));
+        parts.into_par_iter().zip(&by_leaf).with_min_len(64).for_each(|(part, &n)| {
+            let mut gone = gone_in(&self.runs[n]).iter().peekable();
+            let there = self.runs[n].numbers.clone().filter(|v| gone.next_if_eq(&v).is_none());
+            for (to, old) in part.iter_mut().zip(there) {
+                *to = self.mesh.vertices[old as usize];
+            }
+        });
         self.mesh.vertices = Vec::new();
 
         let of_leaf = |leaf: usize| self.triangles(LeafId(leaf as u32));

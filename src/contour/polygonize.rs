@@ -35,6 +35,13 @@ pub struct Polygon {
 }
 
 impl Polygon {
+    /// With four corners.
+    #[inline]
+    pub fn quad([a, b, c, d]: [PolygonCorner; 4]) -> Polygon {
+        // Those beyond the last one mean nothing.
+        Polygon { corners: [a, b, c, d, a, b, c, d], len: 4 }
+    }
+
     /// Adds a corner after the others.
     #[inline]
     pub fn push(&mut self, corner: PolygonCorner) {

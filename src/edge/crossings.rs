@@ -107,11 +107,33 @@ impl EdgeNumbers {
 }
 
 /// The numbers of the set bits of a leaf mask, ascending.
-pub fn bits(mask: &LeafMask) -> impl Iterator<Item = usize> + '_ {
-    mask.iter().enumerate().flat_map(|(word, &bits)| {
-        std::iter::successors((bits != 0).then_some(bits), |&b| Some(b & (b - 1)).filter(|&b| b != 0))
-            .map(move |b| 64 * word + b.trailing_zeros() as usize)
-    })
+#[inline]
+pub fn bits(mask: &LeafMask) -> Bits<'_> {
+    Bits { mask, word: 0, rest: mask[0] }
+}
+
+/// See [`bits`].
+#[derive(Clone, Debug)]
+pub struct Bits<'a> {
+    mask: &'a LeafMask,
+    word: usize,
+    /// The bits of the word that are still to come.
+    rest: u64,
+}
+
+impl Iterator for Bits<'_> {
+    type Item = usize;
+
+    #[inline]
+    fn next(&mut self) -> Option<usize> {
+        while self.rest == 0 {
+            self.rest = *self.mask.get(self.word + 1)?;
+            self.word += 1;
+        }
+        let bit = self.rest.trailing_zeros() as usize;
+        self.rest &= self.rest - 1;
+        Some(64 * self.word + bit)
+    }
 }
 
 /// One crossing: a sample of Hermite data.
