@@ -3,7 +3,7 @@
 use super::LeafBatch;
 use super::build::Worker;
 use super::leaf::{Fate, Leaf};
-use crate::candidates::{BlockLists, Narrowing};
+use crate::candidates::{BlockLists, EightPoints, Narrowing};
 use crate::filter::{Block, FilterStatistics};
 use crate::lattice::{Ijk, LEAF_DIM};
 use glam::DVec3;
@@ -88,20 +88,35 @@ impl Worker<'_> {
                 self.halves(depth + 1, half, side, work);
                 continue;
             }
-            work.lists.push(half.origin, work.narrowing.bounded(depth, n));
             // An edge that the surface crosses has valid ends; other blocks need no list.
-            if self.nodes_by_list(half, side, work) == 0 {
-                work.lists.drop_block();
+            if self.nodes_by_list(n, &centres, half, side, work) > 0 {
+                let (positions, bounds) = work.narrowing.bounded();
+                work.lists.push(half.origin, positions, bounds);
             }
         }
     }
 
-    /// Evaluates the eight nodes of a block of side 2, whose list was added last, and returns how many of them are valid.
-    fn nodes_by_list(&self, block: Block, side: Option<f64>, work: &mut Work<'_>) -> u64 {
+    /// Evaluates the eight nodes of a block of side 2, which was narrowed to last as half number `n` with one of `centres`,
+    /// and returns how many of them are valid.
+    fn nodes_by_list(
+        &self,
+        n: usize,
+        centres: &EightPoints,
+        block: Block,
+        side: Option<f64>,
+        work: &mut Work<'_>,
+    ) -> u64 {
         let nodes = block.children().map(|b| b.origin);
         let points = nodes.map(|node| DVec3::from(self.filter.lattice.world_from_index(node)));
+        let wanted = match side {
+            // Nodes out of the band need no more than the side that they are on.
+            Some(side) => [-1.0, 1.0].map(|end| {
+                ((side * self.filter.r + end * self.filter.half_width) / self.filter.lattice.voxel) as f32
+            }),
+            None => [f32::NEG_INFINITY, f32::INFINITY],
+        };
         let ssvh = self.filter.distance.ssvh();
-        let hits = work.lists.last_block(block, self.filter.lattice).closest_to_eight(ssvh, &points, 8);
+        let hits = work.narrowing.closest_to_nodes(n, centres, ssvh, &points, wanted);
         self.set_nodes(&nodes, &points, &hits, side, &mut work.leaf, work.statistics)
     }
 }

@@ -59,48 +59,28 @@ impl BlockLists {
     ///
     /// # Panics
     /// When no leaf was begun, or the block is not the next.
-    pub fn push(&mut self, origin: Ijk, list: impl Iterator<Item = (u32, PlaneBound)> + Clone) {
+    pub fn push(
+        &mut self,
+        origin: Ijk,
+        positions: impl ExactSizeIterator<Item = u32>,
+        bounds: &[PlaneBound],
+    ) {
         let leaf = self.leaves.last_mut().expect("a leaf was begun");
         let number = block_in_leaf(origin);
         assert!(leaf.mask >> number == 0, "blocks come by ascending number");
         leaf.mask |= 1 << number;
-        let base = base(list.clone().map(|(_, bound)| bound));
+        let base = base(bounds);
         let first = self.entries.len();
-        let mut nearest = (f32::INFINITY, first);
-        for (position, bound) in list {
-            if bound.low < nearest.0 {
-                nearest = (bound.low, self.entries.len());
-            }
-            self.entries.push(Entry::new(position, bound, base));
-        }
+        self.entries
+            .extend(positions.zip(bounds).map(|(position, &bound)| Entry::new(position, bound, base)));
         // The nearest to the centre comes first: it is asked before all others.
-        self.entries.swap(first, nearest.1);
+        let mut nearest = 0;
+        for (n, bound) in bounds.iter().enumerate() {
+            nearest = if bound.low < bounds[nearest].low { n } else { nearest };
+        }
+        self.entries.swap(first, first + nearest);
         self.bases.push(base);
         self.ends.push(self.entries.len());
-    }
-
-    /// The list that was added last, which is that of `block`.
-    ///
-    /// # Panics
-    /// When there is none.
-    pub fn last_block(&self, block: Block, lattice: Lattice) -> Candidates<'_> {
-        let last = self.ends.len().checked_sub(1).expect("a block was added");
-        let (entries, base) = self.numbered(last);
-        Candidates { entries, base, centre: block.centre(lattice), voxel: lattice.voxel }
-    }
-
-    /// Forgets the list that was added last to the leaf that was begun last.
-    ///
-    /// # Panics
-    /// When there is none.
-    pub fn drop_block(&mut self) {
-        let leaf = self.leaves.last_mut().expect("a leaf was begun");
-        assert!(leaf.mask != 0, "a block was added");
-        // Blocks come by ascending number.
-        leaf.mask &= !(1 << leaf.mask.ilog2());
-        self.ends.pop();
-        self.bases.pop();
-        self.entries.truncate(self.ends.last().copied().unwrap_or(0));
     }
 
     fn numbered(&self, list: usize) -> (&[Entry], f32) {

@@ -21,6 +21,7 @@ mod leaf_index;
 mod lists;
 mod narrowing;
 mod near;
+mod nodes;
 #[cfg(test)]
 mod tests;
 

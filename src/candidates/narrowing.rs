@@ -2,10 +2,11 @@
 
 use super::PlaneBound;
 use super::flat::{FlatTriangle, ROUNDING};
+use super::nodes::{Nodes, Passing};
 use crate::filter::Block;
 use crate::geom::lanes::{F32s, P32s, in_lanes};
 use crate::lattice::Lattice;
-use crate::ssvh::Ssvh;
+use crate::ssvh::{Hit, Ssvh};
 use glam::DVec3;
 use pulp::{Simd, WithSimd};
 
@@ -28,9 +29,13 @@ pub struct Narrowing {
     flats: Vec<FlatTriangle>,
     /// Rounding of distances, in voxels.
     slack: f32,
+    /// Model units to a voxel.
+    voxel: f64,
     levels: [Level; LEVELS],
     /// The list that was asked for last.
     named: Vec<u32>,
+    /// Those that come near a block's nodes.
+    passing: Vec<Passing>,
 }
 
 /// A block's candidates and what its eight halves' centres say of them.
@@ -38,6 +43,8 @@ pub struct Narrowing {
 struct Level {
     /// Numbers in `flats`.
     list: Vec<u32>,
+    /// Their bounds around the centre of the block itself, where it was narrowed to.
+    planes: Vec<PlaneBound>,
     bounds: Vec<Bound>,
     nearest: [Nearest; 8],
 }
@@ -58,7 +65,7 @@ pub struct Nearest {
     /// Rounding of the distance.
     pub error: f32,
     /// From its closest point to the centre.
-    from: [f32; 3],
+    pub(super) from: [f32; 3],
 }
 
 impl Narrowing {
@@ -70,6 +77,7 @@ impl Narrowing {
         let limits = corners.map(|c: DVec3| (c - q).length());
         self.positions.clear();
         ssvh.collect(&corners, &limits, &mut self.positions);
+        self.voxel = lattice.voxel;
         let scale = 1.0 / lattice.voxel;
         self.flats.clear();
         self.flats
@@ -84,7 +92,7 @@ impl Narrowing {
     /// Measures the list of `depth` from the centres of the eight halves of its block, given relative to the leaf's
     /// centre in voxels.
     pub fn measure(&mut self, depth: usize, centres: &EightPoints) {
-        let Level { list, bounds, nearest } = &mut self.levels[depth];
+        let Level { list, bounds, nearest, .. } = &mut self.levels[depth];
         let measure = Measure { flats: &self.flats, list, centres, slack: self.slack, bounds };
         *nearest = in_lanes(measure);
     }
@@ -98,10 +106,8 @@ impl Narrowing {
     /// `depth` + 1, for all points from the half's first node to one voxel beyond its last along each axis.
     pub fn narrow(&mut self, depth: usize, n: usize, side: i32) {
         let [.., parent, child] = &mut self.levels[..depth + 2] else { unreachable!("two levels") };
-        child.list.clear();
         let corners = corners(side);
-        let kept = &mut child.list;
-        in_lanes(Narrow { parent, n, corners: &corners, slack: self.slack, kept });
+        in_lanes(Narrow { parent, n, corners: &corners, slack: self.slack, child });
     }
 
     /// The number of triangles in the list of `depth`.
@@ -109,16 +115,45 @@ impl Narrowing {
         self.levels[depth].list.len()
     }
 
-    /// The list of `depth` + 1 as it was narrowed last, from half number `n`: positions in the hierarchy, and bounds around
-    /// the half's centre.
-    pub fn bounded(&self, depth: usize, n: usize) -> impl Iterator<Item = (u32, PlaneBound)> + Clone + '_ {
-        let Level { list, bounds, .. } = &self.levels[depth];
-        // Both lists have the same order.
-        let mut parent = list.iter().zip(bounds);
-        self.levels[depth + 1].list.iter().map(move |own| {
-            let (_, bound) = parent.find(|(other, _)| *other == own).expect("a part of its parent's list");
-            let direction = [bound.direction[0][n], bound.direction[1][n], bound.direction[2][n]];
-            (self.positions[*own as usize], PlaneBound { low: bound.low[n], direction })
+    /// The list of the block of 2^3 nodes that was narrowed to last: positions in the hierarchy, and bounds around the
+    /// block's centre.
+    pub fn bounded(&self) -> (impl ExactSizeIterator<Item = u32> + '_, &[PlaneBound]) {
+        let Level { list, planes, .. } = &self.levels[LEVELS - 1];
+        (list.iter().map(|&n| self.positions[n as usize]), planes)
+    }
+
+    /// The closest triangles to the nodes of the block of 2^3 nodes that was narrowed to last, as [`Ssvh::closest`] finds
+    /// them among all: half number `n`, with its centre among `centres` as it was measured. `points` are the nodes' world
+    /// positions. Of nodes whose distance is not within `wanted`, two lengths in voxels, only that is known: they get a
+    /// distance on the same side of it, and no triangle.
+    pub fn closest_to_nodes(
+        &mut self,
+        n: usize,
+        centres: &EightPoints,
+        ssvh: &Ssvh,
+        points: &[DVec3; 8],
+        wanted: [f32; 2],
+    ) -> [Hit; 8] {
+        let [.., parent, Level { list, planes, .. }] = &self.levels;
+        let mut nodes = NODES;
+        for (nodes, centres) in nodes.iter_mut().zip(centres) {
+            *nodes = nodes.map(|x| x + centres[n]);
+        }
+        in_lanes(Nodes {
+            flats: &self.flats,
+            positions: &self.positions,
+            list,
+            planes,
+            from: parent.nearest[n].from,
+            around: &NODES,
+            nodes: &nodes,
+            slack: self.slack,
+            // Below their rounding, numbers this near are not told apart.
+            wanted: [wanted[0] - self.slack, wanted[1] + self.slack],
+            ssvh,
+            voxel: self.voxel,
+            exact: &[points.map(|p| p.x), points.map(|p| p.y), points.map(|p| p.z)],
+            passing: &mut self.passing,
         })
     }
 
@@ -136,6 +171,12 @@ fn corners(side: i32) -> EightPoints {
     let ends = [0.5 * (1 - side) as f32, 0.5 * (1 + side) as f32];
     std::array::from_fn(|axis| std::array::from_fn(|n| ends[n >> (2 - axis) & 1]))
 }
+
+/// The nodes of a block of 2^3 from their centre, in voxels, z fastest.
+const NODES: EightPoints = {
+    let (a, b) = (-0.5, 0.5);
+    [[a, a, a, a, b, b, b, b], [a, a, b, b, a, a, b, b], [a, b, a, b, a, b, a, b]]
+};
 
 /// Bounds of a list's triangles from eight centres, and the nearest ones.
 struct Measure<'a> {
@@ -187,7 +228,7 @@ struct Narrow<'a> {
     n: usize,
     corners: &'a EightPoints,
     slack: f32,
-    kept: &'a mut Vec<u32>,
+    child: &'a mut Level,
 }
 
 impl WithSimd for Narrow<'_> {
@@ -195,35 +236,33 @@ impl WithSimd for Narrow<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Narrow { parent, n, corners, slack, kept } = self;
+        let Narrow { parent, n, corners, slack, child: Level { list, planes, .. } } = self;
         // How far the corners are from the point that is nearest to the centre.
         let from = P32s::splat(simd, parent.nearest[n].from);
-        let (mut limits, mut farthest, mut radius) = ([0.0; 8], 0.0f32, 0.0f32);
+        let mut limits = [0.0; 8];
         for vector in 0..8 / F32s::<S>::COUNT {
-            let corners = P32s::load(simd, corners, vector);
-            let from = corners + from;
+            let from = P32s::load(simd, corners, vector) + from;
             (from.dot(from).sqrt() + F32s::splat(simd, slack)).store(&mut limits, vector);
         }
-        for (i, limit) in limits.iter().enumerate() {
-            farthest = farthest.max(*limit);
-            let [x, y, z] = [corners[0][i], corners[1][i], corners[2][i]];
-            radius = radius.max((x * x + y * y + z * z).sqrt());
-        }
+        // Every candidate is written, and the next one over it where it does not matter: no branch to guess wrong.
+        let count = parent.list.len();
+        list.resize(count, 0);
+        planes.resize(count, PlaneBound { low: 0.0, direction: [0.0; 3] });
+        let mut kept = 0;
         for (bound, &candidate) in parent.bounds.iter().zip(&parent.list) {
             let low = bound.low[n];
-            if low > farthest + radius {
-                continue;
-            }
             let direction = [bound.direction[0][n], bound.direction[1][n], bound.direction[2][n]];
+            list[kept] = candidate;
+            planes[kept] = PlaneBound { low, direction };
             let (low, direction) = (F32s::splat(simd, low), P32s::splat(simd, direction));
             let mut matters = false;
             for vector in 0..8 / F32s::<S>::COUNT {
                 let at_corners = low + direction.dot(P32s::load(simd, corners, vector));
                 matters |= at_corners.less(F32s::load(simd, &limits, vector)).any();
             }
-            if matters {
-                kept.push(candidate);
-            }
+            kept += usize::from(matters);
         }
+        list.truncate(kept);
+        planes.truncate(kept);
     }
 }

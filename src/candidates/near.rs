@@ -1,7 +1,7 @@
 //! The list of a block, with bounds: most of its triangles are passed over for most of its points.
 
-use crate::geom::lanes::{F32s, F64s, P32s, P64s, in_lanes};
-use crate::ssvh::{Hit, Ssvh};
+use crate::geom::lanes::{F32s, F64s, P32s, in_lanes};
+use crate::ssvh::{Hit, NearestOfEight, Ssvh};
 use glam::{DVec3, Vec3};
 use pulp::{Simd, WithSimd};
 
@@ -46,10 +46,11 @@ const LOWEST: f32 = -FARTHEST;
 
 impl Entry {
     /// `base` is at most the bound at the centre, as [`base`] gives it.
+    #[inline(always)]
     pub fn new(position: u32, bound: PlaneBound, base: f32) -> Entry {
-        // Casting saturates, and rounds down.
-        let [x, y, z] = bound.direction.map(|d| (d * DIRECTIONS + (DIRECTIONS + 0.5)) as u8);
-        let above = ((bound.low.max(LOWEST) - base) * STEPS) as u8;
+        let [x, y, z] = bound.direction.map(|d| byte(d * DIRECTIONS + DIRECTIONS));
+        // Rounded to the nearest after half a step was taken off is rounded down.
+        let above = byte((bound.low.max(LOWEST) - base) * STEPS - 0.5);
         Entry { position, packed: [x, y, z, above] }
     }
 
@@ -65,9 +66,16 @@ impl Entry {
     }
 }
 
+/// The nearest number in 0..=255. Next to 2^23 the last place of an f32 is one, so that adding it rounds: several times
+/// faster than a cast.
+#[inline(always)]
+fn byte(x: f32) -> u8 {
+    (x.max(0.0).min(255.0) + 8_388_608.0).to_bits() as u8
+}
+
 /// The base of a list with the given bounds.
-pub(super) fn base(bounds: impl Iterator<Item = PlaneBound>) -> f32 {
-    bounds.fold(f32::INFINITY, |base, bound| base.min(bound.low.max(LOWEST)))
+pub(super) fn base(bounds: &[PlaneBound]) -> f32 {
+    bounds.iter().fold(f32::INFINITY, |base, bound| base.min(bound.low.max(LOWEST)))
 }
 
 /// The triangles that can be closest to a point of a block or of the cells at its nodes.
@@ -106,12 +114,30 @@ impl Candidates<'_> {
         best
     }
 
-    /// The same for the first `count` of eight points; what is returned for others means nothing.
-    pub fn closest_to_eight(&self, ssvh: &Ssvh, points: &[DVec3; 8], count: usize) -> [Hit; 8] {
+    /// The same for the first `count` of eight points, whose distances are expected to be at most `expected`, in model
+    /// units: only triangles that can be that near are looked at, and all where there is none. What is returned for
+    /// other points means nothing.
+    pub fn closest_to_eight(
+        &self,
+        ssvh: &Ssvh,
+        points: &[DVec3; 8],
+        count: usize,
+        expected: f64,
+    ) -> [Hit; 8] {
         let exact = [points.map(|p| p.x), points.map(|p| p.y), points.map(|p| p.z)];
-        let near = points.map(|p| ((p - self.centre) / self.voxel).as_vec3());
+        let scale = 1.0 / self.voxel;
+        let near = points.map(|p| ((p - self.centre) * scale).as_vec3());
         let near = [near.map(|p| p.x), near.map(|p| p.y), near.map(|p| p.z)];
-        in_lanes(ClosestToEight { candidates: self, ssvh, exact: &exact, near: &near, count })
+        let mut limits = [((expected * scale) as f32).next_up(); 8];
+        // Those that nobody asks for look at nothing.
+        limits[count..].fill(f32::NEG_INFINITY);
+        let kernel = ClosestToEight { candidates: self, ssvh, exact: &exact, near: &near, count, limits };
+        let hits = in_lanes(kernel);
+        if hits[..count].iter().all(|hit| hit.distance_squared <= expected * expected) {
+            return hits;
+        }
+        limits[..count].fill(f32::INFINITY);
+        in_lanes(ClosestToEight { candidates: self, ssvh, exact: &exact, near: &near, count, limits })
     }
 }
 
@@ -121,6 +147,8 @@ struct ClosestToEight<'a> {
     exact: &'a [[f64; 8]; 3],
     near: &'a [[f32; 8]; 3],
     count: usize,
+    /// In voxels.
+    limits: [f32; 8],
 }
 
 impl WithSimd for ClosestToEight<'_> {
@@ -128,12 +156,12 @@ impl WithSimd for ClosestToEight<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [Hit; 8] {
-        let ClosestToEight { candidates: &Candidates { entries, base, voxel, .. }, ssvh, exact, near, count } =
-            self;
-        let mut squared = [f64::INFINITY; 8];
-        // All 32-bit numbers are numbers of 64-bit floats.
-        let mut ids = [f64::INFINITY; 8];
-        let mut limits = [f32::INFINITY; 8];
+        let ClosestToEight { candidates, ssvh, exact, near, count, mut limits } = self;
+        let &Candidates { entries, base, voxel, .. } = candidates;
+        for limit in &mut limits {
+            *limit = *limit * ROUNDED + (LOSS - base);
+        }
+        let mut nearest = NearestOfEight::NONE;
         let scale = 1.0 / (voxel * voxel);
         for &entry in entries {
             let (low, direction) = (F32s::splat(simd, entry.low(0.0)), P32s::splat(simd, entry.direction()));
@@ -146,27 +174,19 @@ impl WithSimd for ClosestToEight<'_> {
                 continue;
             }
             let triangle = ssvh.triangle_at(entry.position).in_lanes(simd);
-            let id = F64s::splat(simd, f64::from(ssvh.id_at(entry.position)));
             for vector in 0..count.div_ceil(F64s::<S>::COUNT) {
-                let found = triangle.distances_squared(simd, P64s::load(simd, exact, vector));
-                let (nearest, triangles) =
-                    (F64s::load(simd, &squared, vector), F64s::load(simd, &ids, vector));
-                let before = found.less(nearest) | (found.at_most(nearest) & id.less(triangles));
-                before.select(found, nearest).store(&mut squared, vector);
-                before.select(id, triangles).store(&mut ids, vector);
+                nearest.offer(simd, &triangle, ssvh.id_at(entry.position), exact, vector);
             }
             let mut scaled = [0.0; 8];
-            for (scaled, squared) in scaled.iter_mut().zip(&squared) {
+            for (scaled, squared) in scaled.iter_mut().zip(&nearest.squared) {
                 *scaled = (squared * scale) as f32;
             }
             for vector in 0..count.div_ceil(F32s::<S>::COUNT) {
                 let distance = F32s::load(simd, &scaled, vector).sqrt();
-                (distance * F32s::splat(simd, ROUNDED) + F32s::splat(simd, LOSS - base))
-                    .store(&mut limits, vector);
+                let limit = distance * F32s::splat(simd, ROUNDED) + F32s::splat(simd, LOSS - base);
+                F32s::load(simd, &limits, vector).min(limit).store(&mut limits, vector);
             }
-            // Those that nobody asks for keep nothing.
-            limits[count..].fill(f32::NEG_INFINITY);
         }
-        std::array::from_fn(|i| Hit { triangle: ids[i] as u32, distance_squared: squared[i] })
+        nearest.hits()
     }
 }

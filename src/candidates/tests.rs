@@ -54,9 +54,11 @@ fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]
             assert!((distance - exact).abs() <= error, "{distance} {exact} {error}");
             narrowing.narrow(1, n, 2);
             check(&mut narrowing, 2, quarter);
+            check_nodes(&mut narrowing, n, &centres(half), &ssvh, lattice, quarter);
             let mut lists = BlockLists::default();
             lists.begin_leaf();
-            lists.push(quarter.origin, narrowing.bounded(1, n));
+            let (positions, bounds) = narrowing.bounded();
+            lists.push(quarter.origin, positions, bounds);
             let lists = CandidateLists::new(lattice, [(vec![origin], lists)]);
             let near = lists.of_cell(quarter.origin).unwrap();
             let points: Vec<DVec3> = shares
@@ -69,16 +71,50 @@ fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]
             for points in points.windows(8).step_by(3) {
                 let points: [DVec3; 8] = points.try_into().unwrap();
                 for count in [1, 3, 5, 8] {
-                    let hits = near.closest_to_eight(&ssvh, &points, count);
-                    for (hit, &p) in hits.iter().zip(&points).take(count) {
-                        assert_eq!(*hit, ssvh.closest(p), "{quarter:?} {p}");
-                        assert_eq!(near.closest(&ssvh, p), *hit);
+                    let squared = ssvh.closest(points[0]).distance_squared;
+                    // Nearer than expected, as near, and farther.
+                    for expected in [f64::INFINITY, squared.sqrt(), 0.0] {
+                        let hits = near.closest_to_eight(&ssvh, &points, count, expected);
+                        for (hit, &p) in hits.iter().zip(&points).take(count) {
+                            assert_eq!(*hit, ssvh.closest(p), "{quarter:?} {p}");
+                            assert_eq!(near.closest(&ssvh, p), *hit);
+                        }
                     }
                 }
             }
         }
     }
     counts
+}
+
+/// Compares the closest triangles to the nodes of a block with the hierarchy, for all distances and for some.
+fn check_nodes(
+    narrowing: &mut Narrowing,
+    n: usize,
+    centres: &EightPoints,
+    ssvh: &Ssvh,
+    lattice: Lattice,
+    block: Block,
+) {
+    let points = block.children().map(|node| DVec3::from(lattice.world_from_index(node.origin)));
+    let exact = points.map(|p| ssvh.closest(p));
+    let voxels = exact.map(|hit| hit.distance_squared.sqrt() / lattice.voxel);
+    let near = voxels[5] as f32;
+    for wanted in [[f32::NEG_INFINITY, f32::INFINITY], [near - 0.1, near + 0.1], [near, near], [0.0, near]] {
+        let hits = narrowing.closest_to_nodes(n, centres, ssvh, &points, wanted);
+        for ((hit, exact), voxels) in hits.iter().zip(&exact).zip(voxels) {
+            if hit.triangle != u32::MAX {
+                assert_eq!(hit, exact, "{block:?} {wanted:?}");
+                continue;
+            }
+            let [least, most] = wanted.map(f64::from);
+            let distance = hit.distance_squared.sqrt() / lattice.voxel;
+            assert!(
+                voxels < least && distance < least || voxels > most && distance > most,
+                "{voxels} {wanted:?}"
+            );
+        }
+    }
 }
 
 fn shares(count: usize) -> Vec<[f64; 3]> {
@@ -149,20 +185,21 @@ fn a_leaf_is_found_by_its_origin() {
 
 #[test]
 fn lists_are_kept_by_block() {
-    let bound = |low| PlaneBound { low, direction: [0.6, 0.0, -0.8] };
-    let list = |positions: &[u32]| positions.iter().map(|&p| (p, bound(p as f32))).collect::<Vec<_>>();
+    let push = |lists: &mut BlockLists, origin: [i32; 3], positions: &[u32]| {
+        let bound = |&p: &u32| PlaneBound { low: p as f32, direction: [0.6, 0.0, -0.8] };
+        let bounds: Vec<PlaneBound> = positions.iter().map(bound).collect();
+        lists.push(Ijk(origin), positions.iter().copied(), &bounds);
+    };
     let mut lists = BlockLists::default();
     lists.begin_leaf();
-    lists.push(Ijk([0, 0, 2]), list(&[6, 5]).into_iter());
-    lists.push(Ijk([2, 2, 2]), list(&[8, 8]).into_iter());
-    lists.drop_block();
-    lists.push(Ijk([4, 0, 0]), list(&[7]).into_iter());
+    push(&mut lists, [0, 0, 2], &[6, 5]);
+    push(&mut lists, [4, 0, 0], &[7]);
     lists.begin_leaf();
-    lists.push(Ijk([8, 0, 0]), list(&[9]).into_iter());
+    push(&mut lists, [8, 0, 0], &[9]);
     lists.drop_leaf();
     let mut others = BlockLists::default();
     others.begin_leaf();
-    others.push(Ijk([30, 6, 6]), list(&[1, 2, 3]).into_iter());
+    push(&mut others, [30, 6, 6], &[1, 2, 3]);
     let parts = [(vec![Ijk([0, 0, 0])], lists), (vec![Ijk([24, 0, 0])], others)];
     let lists = CandidateLists::new(Lattice { voxel: 0.5 }, parts);
     let named = |near: Option<Candidates>| -> Option<Vec<u32>> {

@@ -6,7 +6,7 @@
 //! time. Where that leads nowhere, the hybrid solver takes over.
 
 use super::analytic;
-use super::hybrid::{End, GridEdge, NodeTriangle, Root, SHORTEST, Solver};
+use super::hybrid::{End, GridEdge, NodeTriangle, Root, SHORTEST, Solver, TOLERANCE};
 use super::statistics::EdgeStatistics;
 use crate::candidates::Candidates;
 use glam::DVec3;
@@ -53,7 +53,9 @@ impl Solver<'_> {
         points[proposed..].fill(used);
         statistics.queries += proposed as u64;
         let ssvh = self.distance.ssvh();
-        let hits = (proposed > 0).then(|| near.closest_to_eight(ssvh, &points, proposed));
+        // The triangle that was solved for is that near, and so is the closest one.
+        let expected = self.r.abs() + TOLERANCE * self.voxel;
+        let hits = (proposed > 0).then(|| near.closest_to_eight(ssvh, &points, proposed, expected));
         let mut answers = points.iter().zip(hits.iter().flatten());
         for ((edge, position), root) in edges.iter().zip(positions).zip(roots) {
             let tried = position.and_then(|t| {

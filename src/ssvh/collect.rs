@@ -1,9 +1,9 @@
 //! Lists of triangles: all that come near enough to one of eight points, and the closest of a list.
 
-use super::Ssvh;
 use super::node::{Level, WIDTH};
 use super::query::{Hit, Stack};
-use crate::geom::lanes::{F64s, P64s, in_lanes};
+use super::{NearestOfEight, Ssvh};
+use crate::geom::lanes::{F64s, in_lanes};
 use crate::geom::triangle::Triangle;
 use glam::DVec3;
 use multiversion::multiversion;
@@ -61,22 +61,14 @@ impl WithSimd for ClosestToEight<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [Hit; 8] {
         let ClosestToEight { ssvh, positions, points } = self;
-        let mut squared = [f64::INFINITY; 8];
-        // All 32-bit numbers are numbers of 64-bit floats.
-        let mut ids = [f64::INFINITY; 8];
+        let mut nearest = NearestOfEight::NONE;
         for &position in positions {
-            let triangle = ssvh.triangles[position as usize].in_lanes(simd);
-            let id = F64s::splat(simd, f64::from(ssvh.ids[position as usize]));
+            let triangle = ssvh.triangle_at(position).in_lanes(simd);
             for vector in 0..8 / F64s::<S>::COUNT {
-                let found = triangle.distances_squared(simd, P64s::load(simd, points, vector));
-                let (nearest, triangles) =
-                    (F64s::load(simd, &squared, vector), F64s::load(simd, &ids, vector));
-                let before = found.less(nearest) | (found.at_most(nearest) & id.less(triangles));
-                before.select(found, nearest).store(&mut squared, vector);
-                before.select(id, triangles).store(&mut ids, vector);
+                nearest.offer(simd, &triangle, ssvh.id_at(position), points, vector);
             }
         }
-        std::array::from_fn(|i| Hit { triangle: ids[i] as u32, distance_squared: squared[i] })
+        nearest.hits()
     }
 }
 

@@ -10,6 +10,7 @@
 
 mod build;
 mod collect;
+mod nearest;
 mod node;
 mod query;
 #[cfg(test)]
@@ -17,5 +18,6 @@ mod tests;
 mod validate;
 
 pub use build::Ssvh;
+pub use nearest::NearestOfEight;
 pub use query::Hit;
 pub use validate::InvalidSsvh;

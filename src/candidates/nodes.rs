@@ -1,0 +1,120 @@
+//! The closest triangles to the nodes of a block: in f32 who can be, in f64 who is.
+
+use super::flat::FlatTriangle;
+use super::narrowing::EightPoints;
+use super::near::PlaneBound;
+use crate::geom::lanes::{F32s, F64s, P32s};
+use crate::ssvh::{Hit, NearestOfEight, Ssvh};
+use pulp::{Simd, WithSimd};
+
+/// A triangle whose bound comes near enough to a node.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Passing {
+    /// Its number among the leaf's.
+    number: u32,
+    /// Its distances from the nodes, in voxels.
+    distances: [f32; 8],
+}
+
+/// The list of a block of 2^3 nodes, and the nodes. Lengths in voxels, but for `exact`.
+pub(super) struct Nodes<'a> {
+    /// The leaf's triangles, and their positions in the hierarchy.
+    pub(super) flats: &'a [FlatTriangle],
+    pub(super) positions: &'a [u32],
+    /// Numbers among them, and their bounds around the block's centre.
+    pub(super) list: &'a [u32],
+    pub(super) planes: &'a [PlaneBound],
+    /// From the point of the mesh that is nearest to the block's centre to the centre.
+    pub(super) from: [f32; 3],
+    /// The nodes from the block's centre and from the leaf's.
+    pub(super) around: &'a EightPoints,
+    pub(super) nodes: &'a EightPoints,
+    /// Rounding of a distance.
+    pub(super) slack: f32,
+    /// Nodes whose distance is not between these need no more than that.
+    pub(super) wanted: [f32; 2],
+    pub(super) ssvh: &'a Ssvh,
+    /// Model units to a voxel.
+    pub(super) voxel: f64,
+    /// World positions of the nodes.
+    pub(super) exact: &'a [[f64; 8]; 3],
+    pub(super) passing: &'a mut Vec<Passing>,
+}
+
+impl WithSimd for Nodes<'_> {
+    type Output = [Hit; 8];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> [Hit; 8] {
+        let Nodes { flats, positions, list, planes, from, around, nodes, slack, .. } = self;
+        let Nodes { wanted: [least, most], ssvh, voxel, exact, passing, .. } = self;
+        let slacks = F32s::splat(simd, slack);
+        let nobody = F32s::splat(simd, f32::NEG_INFINITY);
+        let mut limits = [0.0; 8];
+        let mut found = [0.0; 8];
+        for vector in 0..8 / F32s::<S>::COUNT {
+            // No node is farther from the mesh than from this point.
+            let from = P32s::load(simd, around, vector) + P32s::splat(simd, from);
+            let limit = from.dot(from).sqrt() + slacks;
+            limit.store(&mut found, vector);
+            let is_nearer = limit.less(F32s::splat(simd, least));
+            is_nearer.select(nobody, limit).store(&mut limits, vector);
+        }
+        passing.resize(list.len(), Passing::default());
+        let mut count = 0;
+        for (&number, plane) in list.iter().zip(planes) {
+            passing[count].number = number;
+            let (low, direction) = (F32s::splat(simd, plane.low), P32s::splat(simd, plane.direction));
+            let mut matters = false;
+            for vector in 0..8 / F32s::<S>::COUNT {
+                let bound = low + direction.dot(P32s::load(simd, around, vector));
+                matters |= bound.at_most(F32s::load(simd, &limits, vector)).any();
+            }
+            count += usize::from(matters);
+        }
+        let passing = &mut passing[..count];
+        for Passing { number, distances } in passing.iter_mut() {
+            let flat = &flats[*number as usize];
+            for vector in 0..8 / F32s::<S>::COUNT {
+                let (distance, _) = flat.distances(simd, P32s::load(simd, nodes, vector));
+                distance.store(distances, vector);
+                F32s::load(simd, &limits, vector).min(distance + slacks).store(&mut limits, vector);
+                F32s::load(simd, &found, vector).min(distance).store(&mut found, vector);
+            }
+        }
+        for vector in 0..8 / F32s::<S>::COUNT {
+            let is_farther = F32s::splat(simd, most).less(F32s::load(simd, &found, vector) - slacks);
+            let limit = F32s::load(simd, &limits, vector) + slacks;
+            is_farther.select(nobody, limit).store(&mut limits, vector);
+        }
+        let mut nearest = NearestOfEight::NONE;
+        for Passing { number, distances } in passing.iter() {
+            let position = positions[*number as usize];
+            let triangle = ssvh.triangle_at(position).in_lanes(simd);
+            for vector in 0..8 / F64s::<S>::COUNT {
+                if any_within::<S>(distances, &limits, vector) {
+                    nearest.offer(simd, &triangle, ssvh.id_at(position), exact, vector);
+                }
+            }
+        }
+        let mut hits = nearest.hits();
+        for (i, hit) in hits.iter_mut().enumerate() {
+            if limits[i] == f32::NEG_INFINITY {
+                let distance = voxel * f64::from(found[i]);
+                *hit = Hit { triangle: u32::MAX, distance_squared: distance * distance };
+            }
+        }
+        hits
+    }
+}
+
+/// Whether any of the numbers of a vector of f64 is at most its limit.
+#[inline(always)]
+fn any_within<S: Simd>(numbers: &[f32; 8], limits: &[f32; 8], vector: usize) -> bool {
+    let lanes = F64s::<S>::COUNT;
+    let mut any = false;
+    for lane in vector * lanes..(vector + 1) * lanes {
+        any |= numbers[lane] <= limits[lane];
+    }
+    any
+}

@@ -1,0 +1,49 @@
+//! The nearest triangles of eight points while candidates are gone through.
+
+use super::query::Hit;
+use crate::geom::lanes::{F64s, P64s};
+use crate::geom::triangle::TriangleInLanes;
+use pulp::Simd;
+
+/// The best so far of eight points.
+#[derive(Clone, Copy, Debug)]
+pub struct NearestOfEight {
+    /// Squared distances; infinite where nothing was offered yet.
+    pub squared: [f64; 8],
+    /// Triangle numbers: all 32-bit numbers are numbers of 64-bit floats.
+    ids: [f64; 8],
+}
+
+impl NearestOfEight {
+    /// Before anything is offered.
+    pub const NONE: NearestOfEight = NearestOfEight { squared: [f64::INFINITY; 8], ids: [f64::INFINITY; 8] };
+
+    /// Offers the triangle with number `id` to the points of one vector. Of equally near ones the lowest number stays,
+    /// as in [`Hit::before`].
+    #[inline(always)]
+    pub fn offer<S: Simd>(
+        &mut self,
+        simd: S,
+        triangle: &TriangleInLanes<S>,
+        id: u32,
+        points: &[[f64; 8]; 3],
+        vector: usize,
+    ) {
+        let id = F64s::splat(simd, f64::from(id));
+        let found = triangle.distances_squared(simd, P64s::load(simd, points, vector));
+        let (nearest, ids) = (F64s::load(simd, &self.squared, vector), F64s::load(simd, &self.ids, vector));
+        let before = found.less(nearest) | (found.at_most(nearest) & id.less(ids));
+        before.select(found, nearest).store(&mut self.squared, vector);
+        before.select(id, ids).store(&mut self.ids, vector);
+    }
+
+    /// What was found; without meaning for points that nothing was offered to.
+    #[inline(always)]
+    pub fn hits(&self) -> [Hit; 8] {
+        let mut hits = [Hit { triangle: 0, distance_squared: 0.0 }; 8];
+        for (i, hit) in hits.iter_mut().enumerate() {
+            *hit = Hit { triangle: self.ids[i] as u32, distance_squared: self.squared[i] };
+        }
+        hits
+    }
+}
