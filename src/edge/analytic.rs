@@ -13,7 +13,7 @@ const OVERLAP: f64 = 1e-9;
 /// `triangle`: outside for r > 0, inside for r < 0 (by the triangle's normal), on it for 0. Distances from
 /// edges and vertices have no sign of their own; the caller verifies the root against the whole mesh.
 pub(super) fn root(triangle: &Triangle, p1: DVec3, p2: DVec3, r: f64) -> Option<f64> {
-    let (feature1, feature2) = (triangle.closest(p1).feature, triangle.closest(p2).feature);
+    let (feature1, feature2) = (triangle.feature(p1), triangle.feature(p2));
     if feature1 == feature2 {
         // Regions are convex: the whole segment is in this one.
         return in_region(triangle, p1, p2, r, Piece { from: 0.0, to: 1.0, feature: feature1 });

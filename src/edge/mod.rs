@@ -7,6 +7,7 @@ mod bisection;
 mod crossings;
 mod following;
 mod hybrid;
+mod leaf;
 mod regions;
 mod shared;
 mod solve;

@@ -25,7 +25,7 @@ pub(super) fn walk(triangle: &Triangle, p1: DVec3, p2: DVec3) -> impl Iterator<I
     let (cuts, count) = cuts(triangle, p1, p2);
     (1..count).filter(move |&i| cuts[i - 1] < cuts[i]).map(move |i| {
         let (from, to) = (cuts[i - 1], cuts[i]);
-        Piece { from, to, feature: triangle.closest(at(0.5 * (from + to))).feature }
+        Piece { from, to, feature: triangle.feature(at(0.5 * (from + to))) }
     })
 }
 

@@ -1,16 +1,15 @@
 //! All intersected edges of a band, in parallel over its leaves.
 
-use super::bisection;
-use super::hybrid::{Direction, GridEdge, NodeTriangle, Root, Solver, TOLERANCE};
+use super::hybrid::{Solver, TOLERANCE};
+use super::leaf::LeafSolver;
 use super::statistics::EdgeStatistics;
 use super::{Crossing, Crossings, EdgeNumbers};
 use crate::band::{LeafId, SignField};
-use crate::candidates::{CandidateLists, block_in_leaf};
+use crate::candidates::CandidateLists;
 use crate::distance::SignedDistance;
-use crate::lattice::{Axis, Ijk, LEAF_SIZE, Lattice};
+use crate::lattice::{Ijk, LEAF_SIZE, Lattice};
 use crate::run::{Cancelled, Phase, RunSettings};
 use crate::slab::Slab;
-use glam::DVec3;
 use rayon::prelude::*;
 
 /// The slot of a leaf of the ring.
@@ -56,10 +55,6 @@ impl NodeTriangles {
         let [part, place] = *self.slots.get(leaf.0 as usize)?;
         let first = place as usize * LEAF_SIZE;
         self.parts.get(part as usize).map(|ids| &ids[first..first + LEAF_SIZE])
-    }
-
-    fn get(&self, leaf: LeafId, number: usize) -> Option<u32> {
-        u32::try_from(self.of_leaf(leaf)?[number]).ok()
     }
 }
 
@@ -163,92 +158,4 @@ pub fn solve_by(
             })
     })?;
     Ok((Crossings { numbers, samples }, statistics))
-}
-
-struct LeafSolver<'a> {
-    solver: Solver<'a>,
-    method: RootMethod,
-    lattice: Lattice,
-    signs: &'a SignField,
-    numbers: &'a EdgeNumbers,
-    near: &'a NearTriangles,
-}
-
-impl LeafSolver<'_> {
-    fn solve(&self, leaf: LeafId, samples: &mut [Crossing]) -> EdgeStatistics {
-        let mut statistics = EdgeStatistics::default();
-        let (RootMethod::Following, Some(lists)) = (self.method, &self.near.lists) else {
-            for ((axis, number), sample) in self.numbers.in_leaf(leaf).zip(samples) {
-                let edge = self.edge(leaf, axis, number);
-                let root = match self.method {
-                    RootMethod::Following => self.solver.follow(&edge, &mut statistics),
-                    RootMethod::Hybrid => self.solver.solve(&edge, &mut statistics),
-                    RootMethod::Bisection { tolerance } => {
-                        bisection::solve(&self.solver, &edge, tolerance, &mut statistics)
-                    }
-                };
-                *sample = edge.crossing(root);
-            }
-            return statistics;
-        };
-        // The edges by block, in the order of their numbers within it.
-        let mut edges: Vec<(u32, Axis, usize, &mut Crossing)> = self
-            .numbers
-            .in_leaf(leaf)
-            .zip(samples)
-            .map(|((axis, number), sample)| {
-                (block_in_leaf(Ijk::in_leaf(Ijk::default(), number)), axis, number, sample)
-            })
-            .collect();
-        edges.sort_by_key(|edge| edge.0);
-        let origin = self.signs.origin(leaf);
-        let unsolved = Root { t: 0.0, normal: DVec3::ZERO, triangle: 0 };
-        let mut together: Vec<GridEdge<'_>> = Vec::with_capacity(8);
-        for block in edges.chunk_by_mut(|a, b| a.0 == b.0) {
-            let near = lists.of_cell(Ijk::in_leaf(origin, block[0].2));
-            for edges in block.chunks_mut(8) {
-                together.clear();
-                together.extend(edges.iter().map(|&(_, axis, number, _)| GridEdge {
-                    candidates: near,
-                    ..self.edge(leaf, axis, number)
-                }));
-                let mut roots = [unsolved; 8];
-                match near {
-                    Some(near) => {
-                        self.solver.follow_together(&together, &near, &mut statistics, &mut roots);
-                    }
-                    None => {
-                        for (edge, root) in together.iter().zip(&mut roots) {
-                            *root = self.solver.follow(edge, &mut statistics);
-                        }
-                    }
-                }
-                for ((edge, root), (.., sample)) in together.iter().zip(roots).zip(edges) {
-                    **sample = edge.crossing(root);
-                }
-            }
-        }
-        statistics
-    }
-
-    fn edge(&self, leaf: LeafId, axis: Axis, number: usize) -> GridEdge<'_> {
-        let node = Ijk::in_leaf(Ijk::default(), number);
-        let (next_leaf, next_number) =
-            self.signs.locate(leaf, node.next(axis).0).expect("an intersected edge ends in the field");
-        let nodes = &self.near.nodes;
-        let known = [nodes.get(leaf, number), nodes.get(next_leaf, next_number)];
-        // A triangle near one end is near the other.
-        let guess = known[0].or(known[1]).unwrap_or(0);
-        let triangle = |known: Option<u32>| known.map_or(NodeTriangle::Guess(guess), NodeTriangle::Known);
-        let origin = self.signs.origin(leaf);
-        let p = DVec3::from(self.lattice.world_from_index(origin + node));
-        let q = DVec3::from(self.lattice.world_from_index((origin + node).next(axis)));
-        let inside_first = self.signs.inside(leaf)[number >> 6] >> (number & 63) & 1 == 1;
-        let (ends, triangles, direction) = if inside_first {
-            ([p, q], [triangle(known[0]), triangle(known[1])], Direction::Out)
-        } else {
-            ([q, p], [triangle(known[1]), triangle(known[0])], Direction::In)
-        };
-        GridEdge { inside: ends[0], outside: ends[1], triangles, candidates: None, direction, hint: guess }
-    }
 }
