@@ -72,6 +72,8 @@ struct NearMesh<'a> {
     lattice: Lattice,
     index: LeafIndex,
     by_leaf: Vec<Vec<u32>>,
+    /// The leaves that hold a corner of any triangle of up to a leaf's size that is near a suspect.
+    around: LeafIndex,
 }
 
 impl<'a> NearMesh<'a> {
@@ -84,7 +86,8 @@ impl<'a> NearMesh<'a> {
         for (suspect, n) in suspects.iter().zip(0..) {
             by_leaf[index.get(suspect.cell).expect("its own leaf")].push(n);
         }
-        NearMesh { suspects, lattice, index, by_leaf }
+        let around = LeafIndex::new(&around(suspects, lattice));
+        NearMesh { suspects, lattice, index, by_leaf, around }
     }
 
     /// The nearest triangle within reach of each suspect.
@@ -95,12 +98,17 @@ impl<'a> NearMesh<'a> {
             .map(|triangles| {
                 run.check()?;
                 let mut pairs = Vec::new();
+                // Triangles come leaf by leaf.
+                let mut last = (Ijk([i32::MIN; 3]), false);
                 for &vertices in triangles {
-                    self.triangle(
-                        vertices.map(|v| DVec3::from(mesh.vertices[v as usize])),
-                        vertices,
-                        &mut pairs,
-                    );
+                    let corners = vertices.map(|v| DVec3::from(mesh.vertices[v as usize]));
+                    let leaf = leaf_at(corners[0], self.lattice);
+                    if leaf != last.0 {
+                        last = (leaf, self.around.get(leaf).is_some());
+                    }
+                    if last.1 || !self.is_small(&corners) {
+                        self.triangle(corners, vertices, &mut pairs);
+                    }
                 }
                 Ok(pairs)
             })
@@ -114,31 +122,51 @@ impl<'a> NearMesh<'a> {
         Ok(nearest)
     }
 
+    /// Whether a triangle extends over no more than a leaf along each axis.
+    fn is_small(&self, [a, b, c]: &[DVec3; 3]) -> bool {
+        let size = (a.max(*b).max(*c) - a.min(*b).min(*c)).max_element();
+        size <= f64::from(LEAF_DIM) * self.lattice.voxel
+    }
+
     fn triangle(&self, corners: [DVec3; 3], vertices: [u32; 3], pairs: &mut Vec<(u32, Nearest)>) {
         let reach = REACH * self.lattice.voxel;
         let [a, b, c] = corners;
         let (lo, hi) = (a.min(b).min(c) - reach, a.max(b).max(c) + reach);
-        let node = |p: DVec3| Ijk((p / self.lattice.voxel).floor().as_ivec3().to_array()).leaf_origin().0;
-        let (first, last) = (node(lo), node(hi));
-        let step = LEAF_DIM as usize;
-        for x in (first[0]..=last[0]).step_by(step) {
-            for y in (first[1]..=last[1]).step_by(step) {
-                for z in (first[2]..=last[2]).step_by(step) {
-                    let Some(leaf) = self.index.get(Ijk([x, y, z])) else { continue };
-                    for &n in &self.by_leaf[leaf] {
-                        let p = self.suspects[n as usize].at;
-                        if p.cmplt(lo).any() || p.cmpgt(hi).any() {
-                            continue;
-                        }
-                        let triangle = Triangle::new(corners, vertices);
-                        let closest = triangle.closest(p);
-                        let distance = closest.distance_squared.sqrt();
-                        let cosine =
-                            (p - closest.point).dot(triangle.normal) / distance.max(f64::MIN_POSITIVE);
-                        pairs.push((n, Nearest { distance, cosine }));
-                    }
+        for leaf in leaves_between(lo, hi, self.lattice).filter_map(|leaf| self.index.get(leaf)) {
+            for &n in &self.by_leaf[leaf] {
+                let p = self.suspects[n as usize].at;
+                if p.cmplt(lo).any() || p.cmpgt(hi).any() {
+                    continue;
                 }
+                let triangle = Triangle::new(corners, vertices);
+                let closest = triangle.closest(p);
+                let distance = closest.distance_squared.sqrt();
+                let cosine = (p - closest.point).dot(triangle.normal) / distance.max(f64::MIN_POSITIVE);
+                pairs.push((n, Nearest { distance, cosine }));
             }
         }
     }
+}
+
+/// The leaves within reach of suspects and a leaf's side more, ascending.
+fn around(suspects: &[Suspect], lattice: Lattice) -> Vec<Ijk> {
+    // And a voxel, for rounding.
+    let margin = (REACH + f64::from(LEAF_DIM) + 1.0) * lattice.voxel;
+    let of = |s: &Suspect| leaves_between(s.at - margin, s.at + margin, lattice);
+    let mut leaves: Vec<Ijk> = suspects.iter().flat_map(of).collect();
+    leaves.sort_unstable();
+    leaves.dedup();
+    leaves
+}
+
+/// The origin of the leaf that a point lies in.
+fn leaf_at(p: DVec3, lattice: Lattice) -> Ijk {
+    Ijk((p / lattice.voxel).floor().as_ivec3().to_array()).leaf_origin()
+}
+
+/// The origins of the leaves that the box from `lo` to `hi` touches, z fastest.
+fn leaves_between(lo: DVec3, hi: DVec3, lattice: Lattice) -> impl Iterator<Item = Ijk> {
+    let (first, last) = (leaf_at(lo, lattice).0, leaf_at(hi, lattice).0);
+    let along = move |axis: usize| (first[axis]..=last[axis]).step_by(LEAF_DIM as usize);
+    along(0).flat_map(move |x| along(1).flat_map(move |y| along(2).map(move |z| Ijk([x, y, z]))))
 }

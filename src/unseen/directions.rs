@@ -2,6 +2,7 @@
 
 use crate::ssvh::Ssvh;
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// Coordinates of a unit vector within this of zero count as zero. It makes the 26 directions about equally likely.
 const FLAT: f64 = 0.4;
@@ -17,7 +18,8 @@ pub(super) struct DirectionTable {
 
 impl DirectionTable {
     pub(super) fn new(ssvh: &Ssvh, triangles: usize) -> DirectionTable {
-        let by_triangle = (0..triangles as u32).map(|t| direction(ssvh.triangle(t).normal)).collect();
+        let of = |t| direction(ssvh.triangle(t).normal);
+        let by_triangle = (0..triangles as u32).into_par_iter().with_min_len(1 << 12).map(of).collect();
         let away = std::array::from_fn(|a| {
             (0..27).filter(|&b| vector(a).dot(vector(b)) <= 0.0).fold(0, |set, b| set | 1 << b)
         });
@@ -28,6 +30,19 @@ impl DirectionTable {
     #[inline]
     pub(super) fn of(&self, triangle: u32) -> Directions {
         1 << self.by_triangle[triangle as usize]
+    }
+
+    /// The directions of triangles, with -1 for none.
+    pub(super) fn of_all(&self, triangles: &[i32]) -> Directions {
+        let (mut all, mut last) = (0, -1);
+        for &triangle in triangles {
+            // Neighbours mostly have the same.
+            if triangle != last && triangle >= 0 {
+                all |= self.of(triangle as u32);
+            }
+            last = triangle;
+        }
+        all
     }
 
     /// Whether two directions of a set are at a right angle or more to each other.

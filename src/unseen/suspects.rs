@@ -82,7 +82,11 @@ pub fn suspects(
     run: &RunSettings,
 ) -> Result<Suspects, Cancelled> {
     let directions = DirectionTable::new(distance.ssvh(), distance.mesh().triangles.len());
-    let search = Search { distance, r, lattice, signs, near, directions };
+    let by_leaf = run.install(|| {
+        let of_leaf = |leaf| directions.of_all(near.nodes.of_leaf(leaf).unwrap_or_default());
+        signs.leaves().collect::<Vec<_>>().into_par_iter().with_min_len(64).map(of_leaf).collect()
+    });
+    let search = Search { distance, r, lattice, signs, near, directions, by_leaf };
     let leaves: Vec<LeafId> = signs.leaves().filter(|&leaf| slab.owns(signs.origin(leaf))).collect();
     let all: Vec<Vec<Suspect>> = run.install(|| {
         leaves
@@ -100,6 +104,9 @@ pub fn suspects(
 /// Nodes along the side of a leaf's cells.
 const SIDE: usize = LEAF_DIM as usize + 1;
 
+/// The corners of a leaf's cells.
+const NODES: usize = SIDE * SIDE * SIDE;
+
 struct Search<'a> {
     distance: &'a SignedDistance<'a>,
     r: f64,
@@ -107,6 +114,8 @@ struct Search<'a> {
     signs: &'a SignField,
     near: &'a NearTriangles,
     directions: DirectionTable,
+    /// The directions of all closest triangles of each leaf's nodes.
+    by_leaf: Vec<Directions>,
 }
 
 /// A corner of a cell whose distance is known.
@@ -122,43 +131,55 @@ struct Corner {
 impl Search<'_> {
     fn leaf(&self, leaf: LeafId) -> Vec<Suspect> {
         let mut found = Vec::new();
-        let Some((triangles, all)) = self.corners(leaf) else { return found };
+        let around: [Option<LeafId>; 8] = std::array::from_fn(|n| {
+            self.signs.neighbour(leaf, [n >> 2 & 1, n >> 1 & 1, n & 1].map(|d| d as i32))
+        });
+        // Most leaves are done with by what all of them and of the next ones have.
+        let all = around.iter().flatten().fold(0, |all, id| all | self.by_leaf[id.0 as usize]);
         if !self.directions.disagree(all) {
             return found;
         }
-        let sets = triangles.map(|t| if t < 0 { 0 } else { self.directions.of(t as u32) });
+        let (triangles, sets) = self.corners(around);
+        let sets = around_cells(sets);
+        let (mut last, mut disagrees) = (0, false);
         for number in 0..LEAF_SIZE {
             let [x, y, z] = [number >> 6, number >> 3 & 7, number & 7];
             let first = (x * SIDE + y) * SIDE + z;
-            let at = |corner: usize| first + CORNERS[corner];
-            let set = (0..8).fold(0, |set, corner| set | sets[at(corner)]);
-            if set.count_ones() > 1 && self.directions.disagree(set) {
-                self.cell(leaf, number, std::array::from_fn(|corner| triangles[at(corner)]), &mut found);
+            if sets[first] != last {
+                last = sets[first];
+                disagrees = self.directions.disagree(last);
+            }
+            if disagrees {
+                let corners = std::array::from_fn(|corner| triangles[first + CORNERS[corner]]);
+                self.cell(leaf, number, corners, &mut found);
             }
         }
         found
     }
 
-    /// The closest triangles of the nodes of a leaf and of the next ones along each axis, -1 where none is known, and all
-    /// their directions; `None` when no triangle is known.
-    fn corners(&self, leaf: LeafId) -> Option<([i32; SIDE * SIDE * SIDE], Directions)> {
-        let neighbours: [Option<&[i32]>; 8] = std::array::from_fn(|n| {
-            let delta = [n >> 2 & 1, n >> 1 & 1, n & 1].map(|d| d as i32);
-            self.near.nodes.of_leaf(self.signs.neighbour(leaf, delta)?)
-        });
-        neighbours.iter().any(Option::is_some).then_some(())?;
-        let mut triangles = [-1; SIDE * SIDE * SIDE];
-        let (mut all, mut last) = (0, -1);
-        for (n, triangle) in triangles.iter_mut().enumerate() {
-            let [x, y, z] = [n / (SIDE * SIDE), n / SIDE % SIDE, n % SIDE];
-            let Some(ids) = neighbours[x >> 3 << 2 | y >> 3 << 1 | z >> 3] else { continue };
-            *triangle = ids[(x & 7) << 6 | (y & 7) << 3 | z & 7];
-            if *triangle >= 0 && *triangle != last {
-                all |= self.directions.of(*triangle as u32);
-                last = *triangle;
+    /// The closest triangles of the nodes of a leaf and of the next ones along each axis, -1 where none is known, and their
+    /// directions. `around` is the leaf and the next ones, z fastest.
+    fn corners(&self, around: [Option<LeafId>; 8]) -> ([i32; NODES], [Directions; NODES]) {
+        let ids = around.map(|leaf| self.near.nodes.of_leaf(leaf?));
+        let (mut triangles, mut sets) = ([-1; NODES], [0; NODES]);
+        for row in 0..SIDE * SIDE {
+            let [x, y] = [row / SIDE, row % SIDE];
+            let number = (x & 7) << 6 | (y & 7) << 3;
+            let [own, next] = [0, 1].map(|z| ids[x >> 3 << 2 | y >> 3 << 1 | z]);
+            let first = row * SIDE;
+            if let Some(own) = own {
+                triangles[first..first + SIDE - 1].copy_from_slice(&own[number..number + SIDE - 1]);
+            }
+            if let Some(next) = next {
+                triangles[first + SIDE - 1] = next[number];
             }
         }
-        Some((triangles, all))
+        for (set, &triangle) in sets.iter_mut().zip(&triangles) {
+            if triangle >= 0 {
+                *set = self.directions.of(triangle as u32);
+            }
+        }
+        (triangles, sets)
     }
 
     /// Searches the three edges that start at a cell's lowest node, and the cell itself if its corners have one sign.
@@ -292,6 +313,17 @@ impl Search<'_> {
         let depth = -corner.height / self.lattice.voxel;
         (depth > NEGLIGIBLE).then_some((corner.p, depth))
     }
+}
+
+/// From the directions at nodes to those at all corners of the cells whose lowest nodes they are, one axis after the
+/// other. The last along an axis have no cell, and mean nothing.
+fn around_cells(mut sets: [Directions; NODES]) -> [Directions; NODES] {
+    for step in [1, SIDE, SIDE * SIDE] {
+        for n in 0..NODES - step {
+            sets[n] |= sets[n + step];
+        }
+    }
+    sets
 }
 
 /// The corners of a cell in the array of a leaf's nodes, z fastest.
