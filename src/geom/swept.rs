@@ -83,11 +83,12 @@ impl Swept {
     /// one with the smallest volume, the simpler one on a tie, with axes by principal components.
     pub fn around(spheres: &[Sphere]) -> Swept {
         let (u, v) = principal_axes(spheres);
-        let rectangle = fit(spheres, u, v, SweptKind::Rectangle);
-        let line = fit(spheres, u, v, SweptKind::Line);
-        let point = fit(spheres, u, v, SweptKind::Point);
+        let frame = Frame::new(spheres, u, v);
+        let [rectangle, line, point] =
+            [SweptKind::Rectangle, SweptKind::Line, SweptKind::Point].map(|kind| frame.fit(kind));
         let best = if line.volume() <= rectangle.volume() { line } else { rectangle };
-        if point.volume() <= best.volume() { point } else { best }
+        let best = if point.volume() <= best.volume() { point } else { best };
+        best.with_radius_around(spheres)
     }
 
     /// The rectangle-swept volume of a triangle, along its longest edge; its radius is rounding alone.
@@ -102,7 +103,10 @@ impl Swept {
         let u = base.try_normalize().unwrap_or(DVec3::X);
         let apex = corners[(longest + 2) % 3] - corners[longest];
         let v = perpendicular(apex - u * apex.dot(u), u, base.length());
-        fit(&corners.map(|c| (c, 0.0)), u, v, SweptKind::Rectangle)
+        // The third corner lies between the ends of the longest edge, but for rounding.
+        let half = [0.5 * base.length(), 0.5 * apex.dot(v).max(0.0)];
+        let centre = corners[longest] + u * half[0] + v * half[1];
+        Swept { centre, u, v, half, radius: 0.0 }.with_radius_around(&corners.map(|c| (c, 0.0)))
     }
 
     /// The same volume with the radius that `spheres` really need, after centre, axes or half-lengths
@@ -135,39 +139,60 @@ fn principal_axes(spheres: &[Sphere]) -> (DVec3, DVec3) {
     (u, v)
 }
 
-fn fit(spheres: &[Sphere], u: DVec3, v: DVec3, kind: SweptKind) -> Swept {
-    let n = u.cross(v);
-    let origin = spheres[0].0;
-    let local = |p: DVec3| {
-        let d = p - origin;
-        DVec3::new(d.dot(u), d.dot(v), d.dot(n))
-    };
-    let lo = spheres.iter().map(|&(p, r)| local(p) - r).fold(DVec3::INFINITY, DVec3::min);
-    let hi = spheres.iter().map(|&(p, r)| local(p) + r).fold(DVec3::NEG_INFINITY, DVec3::max);
-    let mid = (lo + hi) * 0.5;
-    // Distance of a sphere from the core's line or plane, as far as the core's extent does not matter.
-    let off_core = |p: DVec3| match kind {
-        SweptKind::Rectangle => (p.z - mid.z).abs(),
-        SweptKind::Line | SweptKind::Point => {
-            ((p.y - mid.y) * (p.y - mid.y) + (p.z - mid.z) * (p.z - mid.z)).sqrt()
-        }
-    };
-    let radius = spheres.iter().map(|&(p, r)| off_core(local(p)) + r).fold(0.0, f64::max);
-    // The round end already covers sqrt(radius^2 - off^2) beyond the core, so the core can be shorter.
-    let extent = |axis: usize| {
-        let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
+/// Spheres seen along the axes of a volume.
+struct Frame {
+    origin: DVec3,
+    axes: [DVec3; 3],
+    /// Coordinates along the axes.
+    spheres: Vec<Sphere>,
+    /// The middle of the box around them.
+    mid: DVec3,
+}
+
+impl Frame {
+    fn new(spheres: &[Sphere], u: DVec3, v: DVec3) -> Frame {
+        let n = u.cross(v);
+        let origin = spheres[0].0;
+        let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let local = |&(p, r): &Sphere| {
+            let d = p - origin;
+            let p = DVec3::new(d.dot(u), d.dot(v), d.dot(n));
+            (lo, hi) = (lo.min(p - r), hi.max(p + r));
+            (p, r)
+        };
+        let spheres = spheres.iter().map(local).collect();
+        Frame { origin, axes: [u, v, n], spheres, mid: (lo + hi) * 0.5 }
+    }
+
+    /// The volume of one kind around the spheres, but for rounding.
+    fn fit(&self, kind: SweptKind) -> Swept {
+        let Frame { origin, axes: [u, v, n], ref spheres, mid } = *self;
+        // Squared distance of a sphere from the core's line or plane, as far as the core's extent does not matter.
+        let off_core = |p: DVec3| match kind {
+            SweptKind::Rectangle => (p.z - mid.z) * (p.z - mid.z),
+            SweptKind::Line | SweptKind::Point => {
+                (p.y - mid.y) * (p.y - mid.y) + (p.z - mid.z) * (p.z - mid.z)
+            }
+        };
+        let radius = spheres.iter().map(|&(p, r)| off_core(p).sqrt() + r).fold(0.0, f64::max);
+        let (mut from, mut to) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for &(p, r) in spheres {
-            let p = local(p);
-            let room = ((radius - r).max(0.0).powi(2) - off_core(p).powi(2)).max(0.0).sqrt();
-            from = from.min(p[axis] + room);
-            to = to.max(p[axis] - room);
+            // The round end already covers this much beyond the core, so the core can be shorter.
+            let room = ((radius - r) * (radius - r) - off_core(p)).max(0.0).sqrt();
+            (from, to) = (from.min(p + room), to.max(p - room));
         }
-        if from < to { ((from + to) * 0.5, (to - from) * 0.5) } else { (mid[axis], 0.0) }
-    };
-    let (x, half_u) = if kind == SweptKind::Point { (mid.x, 0.0) } else { extent(0) };
-    let (y, half_v) = if kind == SweptKind::Rectangle { extent(1) } else { (mid.y, 0.0) };
-    let centre = origin + u * x + v * y + n * mid.z;
-    Swept { centre, u, v, half: [half_u, half_v], radius }.with_radius_around(spheres)
+        let extent = |axis: usize| {
+            let (from, to) = (from[axis], to[axis]);
+            if from < to { ((from + to) * 0.5, (to - from) * 0.5) } else { (mid[axis], 0.0) }
+        };
+        let (x, half_u) = if kind == SweptKind::Point { (mid.x, 0.0) } else { extent(0) };
+        let (y, half_v) = if kind == SweptKind::Rectangle { extent(1) } else { (mid.y, 0.0) };
+        let centre = origin + u * x + v * y + n * mid.z;
+        let swept = Swept { centre, u, v, half: [half_u, half_v], radius };
+        // What the ends leave out: the radius so far is that of an endless core.
+        let local = Swept { centre: DVec3::new(x, y, mid.z), u: DVec3::X, v: DVec3::Y, ..swept };
+        Swept { radius: local.with_radius_around(spheres).radius, ..swept }
+    }
 }
 
 #[cfg(test)]
