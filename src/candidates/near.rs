@@ -69,6 +69,7 @@ impl Entry {
 /// The nearest number in 0..=255. Next to 2^23 the last place of an f32 is one, so that adding it rounds: several times
 /// faster than a cast.
 #[inline(always)]
+#[allow(clippy::manual_clamp, reason = "what is not a number becomes 0")]
 fn byte(x: f32) -> u8 {
     (x.max(0.0).min(255.0) + 8_388_608.0).to_bits() as u8
 }

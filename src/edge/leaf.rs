@@ -120,7 +120,7 @@ impl LeafSolver<'_> {
         let step = [64, 8, 1][along];
         let node = leaf.origin + Ijk::in_leaf(Ijk::default(), number);
         // The other end is in the leaf, or among the first nodes of the next one.
-        let (ids, next) = match number / step & 7 {
+        let (ids, next) = match (number / step) & 7 {
             7 => (leaf.next[along], number - 7 * step),
             _ => (leaf.own, number + step),
         };
