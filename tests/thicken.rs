@@ -161,6 +161,57 @@ fn parts_that_touch_in_a_vertex_hang_together() {
     }
 }
 
+/// A square of side 2 with holes of the shape of triangles and squares: some by themselves, some touch in a vertex.
+fn sieve() -> TriMesh {
+    let mut sieve = square(12);
+    let is_hole = |t: &usize| {
+        let (cell, half) = (t / 2, t % 2);
+        match (cell % 12, cell / 12) {
+            (2 | 8, 2) => half == 0,
+            // Two squares with a vertex in common.
+            (5, 5) | (6, 6) => true,
+            // Three triangles around a vertex.
+            (2, 8) | (3, 7) => half == 0,
+            (2, 7) => half == 1,
+            _ => false,
+        }
+    };
+    let kept = (0..sieve.triangles.len()).filter(|t| !is_hole(t)).map(|t| sieve.triangles[t]).collect();
+    sieve.triangles = kept;
+    sieve
+}
+
+/// Handles of a closed mesh of one part.
+fn handles(mesh: &TriMesh) -> i64 {
+    let vertices: BTreeSet<u32> = mesh.triangles.as_flattened().iter().copied().collect();
+    1 - (vertices.len() as i64 - mesh.triangles.len() as i64 / 2) / 2
+}
+
+#[test]
+fn holes_that_the_lattice_cannot_see_are_closed_and_said() {
+    let sieve = sieve();
+    for side in [Side::Inner, Side::Outer] {
+        // Triangular holes are 0.1 wide, square ones 0.17.
+        let result = check(&sieve, &settings(0.6, 0.1, side));
+        assert_eq!(result.statistics.capped.len(), 6, "{:?}", result.statistics.capped);
+        assert!(result.statistics.capped.iter().all(|p| sieve.vertices.contains(p)));
+        let volume = signed_volume(&result.mesh);
+        assert!((volume / 2.4 - 1.0).abs() < 0.005, "{volume}");
+    }
+}
+
+#[test]
+fn holes_that_it_can_see_stay() {
+    for side in [Side::Inner, Side::Outer] {
+        let result = check(&sieve(), &settings(0.1, 0.012, side));
+        assert_eq!(result.statistics.capped, Vec::<[f64; 3]>::new());
+        assert_eq!(handles(&result.mesh), 6);
+        let volume = signed_volume(&result.mesh);
+        let expected = 0.1 * (4.0 - 9.0 / 72.0);
+        assert!((volume / expected - 1.0).abs() < 0.01, "{volume}, not {expected}");
+    }
+}
+
 #[test]
 fn a_folded_patch_is_merged_with_itself() {
     // A strip bent to a U, whose legs are nearer to each other than twice the thickness.

@@ -42,6 +42,14 @@ pub(super) fn run(arguments: &ThickenArguments, session: &Session) -> Result<(),
             short(statistics.voxel)
         ));
     }
+    if !statistics.capped.is_empty() {
+        session.warn(&format!(
+            "{} too narrow for voxels of {} closed, the first one near ({}); a smaller voxel size keeps what it can wall",
+            counted(statistics.capped.len(), "hole is", "holes are"),
+            short(statistics.voxel),
+            statistics.capped[0].map(short).join(", ")
+        ));
+    }
     let (_, write) = session.phase(Phase::Write, || {
         save_mesh(&result.mesh, &arguments.output, coordinates(arguments.more.f64), session)?;
         arguments.more.vdb.as_deref().map_or(Ok(()), |path| save_level_set(&result, path, arguments, session))

@@ -187,7 +187,7 @@ impl Edge<'_> {
     /// Where the closest point jumps from one part of S to another.
     fn at_jump(&self, inside: End, outside: End) -> (Crossing, Part) {
         let distance = self.solid.distance;
-        if let Some((depth, normal)) = self.solid.rod(self.at(outside.t))
+        if let Some((depth, normal)) = self.solid.rods.at(self.at(outside.t))
             && (depth - self.solid.lid).abs() <= self.voxel * 1e-3
         {
             return (self.crossing(&outside, normal), Part::Lid);

@@ -11,6 +11,7 @@
 //! contour comes near S: the ribbon from the boundary of S to the lid's rim closes the solid.
 
 use super::boundary::Boundary;
+use super::rods::Rods;
 use crate::candidates::CandidateLists;
 use crate::distance::{Sample, SignedDistance};
 use glam::DVec3;
@@ -39,8 +40,8 @@ pub(super) struct Solid<'a> {
     pub map: Option<&'a [f64]>,
     /// Depth of the lid, in model units.
     pub lid: f64,
-    /// Radius of the rods below vertices in which parts of S touch, in model units.
-    pub rod: f64,
+    /// The solid is thickened around vertices in which parts of S touch.
+    pub rods: &'a Rods,
     /// The triangles near each point.
     pub lists: Option<&'a CandidateLists>,
 }
@@ -78,7 +79,7 @@ impl Solid<'_> {
     pub fn place(&self, p: DVec3, sample: &Sample) -> Place {
         let mut depth = -sample.distance;
         if self.boundary.holds(self.distance.mesh(), sample.triangle, sample.feature) {
-            match self.rod(p) {
+            match self.rods.at(p) {
                 Some((at, _)) => depth = depth.copysign(at).min(at),
                 None => return Place::Beside,
             }
@@ -90,17 +91,5 @@ impl Solid<'_> {
         } else {
             Place::Inside
         }
-    }
-
-    /// The depth of a point in the rod below a vertex in which parts of S touch, and the normal there. The solid is thickened
-    /// around such a vertex, or the parts would hang together by less than a voxel.
-    pub fn rod(&self, p: DVec3) -> Option<(f64, DVec3)> {
-        self.boundary.touching.iter().find_map(|&v| {
-            let across = p - DVec3::from(self.distance.mesh().vertices[v as usize]);
-            let normal = self.boundary.touching_normal(v);
-            let depth = -across.dot(normal);
-            let is_near = depth.abs() <= self.thickness && (across + normal * depth).length() <= self.rod;
-            is_near.then_some((depth, normal))
-        })
     }
 }

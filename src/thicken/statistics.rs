@@ -15,6 +15,8 @@ pub struct ThickenStatistics {
     pub times: ThickenTimes,
     /// Triangles of the result.
     pub triangles: TriangleCounts,
+    /// Holes that are too narrow for the lattice and were closed: a point of each.
+    pub capped: Vec<[f64; 3]>,
 }
 
 /// Triangles of the result by origin.

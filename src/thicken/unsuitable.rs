@@ -151,8 +151,10 @@ impl fmt::Display for Point {
 }
 
 /// A place where a lattice does not do.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Blocked {
     pub obstacle: Obstacle,
     pub at: [f64; 3],
+    /// A boundary edge of each loop that is in the way there and elsewhere.
+    pub edges: Vec<[u32; 2]>,
 }

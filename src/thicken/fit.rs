@@ -1,0 +1,150 @@
+//! Strips that meet nothing, by exact tests.
+
+use super::ribbon::{Ribbon, Step};
+use crate::geom::predicates::projection_axis;
+use crate::geom::triangle_pair::meeting_point;
+use crate::mesh::TriMesh;
+use crate::run::{Cancelled, RunSettings};
+use crate::verify::boxes::BoxTree;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Strips are chosen anew this often without the triangles that meet something. Each time most conflicts are gone; what
+/// is left after so many goes round in circles.
+const TRIES: usize = 12;
+
+/// A step of a ribbon that does not fit.
+#[derive(Debug)]
+pub(super) struct Conflict {
+    /// Rim vertices at it.
+    pub rim: Vec<u32>,
+    /// The section's triangles that it meets.
+    pub section: Vec<usize>,
+    pub at: [f64; 3],
+    /// The strip, if it is one's.
+    pub ribbon: Option<usize>,
+}
+
+/// What ribbons must not meet.
+pub(super) struct Around<'a> {
+    pub mesh: &'a TriMesh,
+    pub tree: &'a BoxTree,
+    /// The first triangles are those of the patch.
+    pub patch: usize,
+    /// Whether each of the others is there.
+    pub kept: &'a [bool],
+}
+
+impl Around<'_> {
+    /// The triangles of ribbons that meet nothing, or where they would.
+    pub fn fit(
+        &self,
+        ribbons: &mut [Ribbon],
+        run: &RunSettings,
+    ) -> Result<Result<Vec<[u32; 3]>, Vec<Conflict>>, Cancelled> {
+        let mut paths: Vec<Vec<Step>> = vec![Vec::new(); ribbons.len()];
+        let mut stale: Vec<bool> = vec![true; ribbons.len()];
+        let mut bad: Vec<(usize, Step)> = Vec::new();
+        for tries in 0.. {
+            run.check()?;
+            let mut stuck = false;
+            for (n, ribbon) in ribbons.iter().enumerate().filter(|&(n, _)| stale[n]) {
+                match ribbon.cheapest() {
+                    Some(path) => paths[n] = path,
+                    None => stuck = true,
+                }
+            }
+            if stuck || tries == TRIES {
+                if bad.is_empty() {
+                    // Not even without conflicts: the ends are out of reach of each other.
+                    bad.extend(ribbons.iter().enumerate().map(|(n, _)| (n, Step::Rim(0, 0))));
+                }
+                let conflicts = bad.iter().map(|&(n, step)| self.conflict(ribbons, n, step)).collect();
+                return Ok(Err(conflicts));
+            }
+            // Which ribbon and step each triangle is.
+            let steps: Vec<(usize, Step)> =
+                paths.iter().enumerate().flat_map(|(n, path)| path.iter().map(move |&s| (n, s))).collect();
+            let triangles: Vec<[u32; 3]> = steps.iter().map(|&(n, s)| ribbons[n].triangle(s)).collect();
+            bad = steps
+                .par_iter()
+                .zip(&triangles)
+                .with_min_len(16)
+                .filter(|&(_, &t)| self.meets(t))
+                .map(|(&step, _)| step)
+                .collect();
+            if bad.is_empty() {
+                let strip = TriMesh { vertices: self.mesh.vertices.clone(), triangles };
+                bad = costlier_of_pairs(&strip, &steps, ribbons, run)?;
+                if bad.is_empty() {
+                    return Ok(Ok(strip.triangles));
+                }
+            }
+            stale.fill(false);
+            for &(n, step) in &bad {
+                stale[n] = true;
+                ribbons[n].forbidden.insert(step);
+            }
+        }
+        unreachable!("tries end")
+    }
+
+    /// Calls `visit` with each triangle near triangle `t` of the strip that it meets.
+    pub fn meeting(&self, t: [u32; 3], mut visit: impl FnMut(usize)) {
+        let corners = t.map(|v| self.mesh.vertices[v as usize]);
+        let [a, b, c] = corners.map(DVec3::from);
+        let (lo, hi) = (a.min(b).min(c), a.max(b).max(c));
+        // Half the longest side, and a little for rounding.
+        self.tree.near(lo.midpoint(hi), 0.500_001 * (hi - lo).max_element(), |n| {
+            let n = n as usize;
+            let is_there = n < self.patch || self.kept[n - self.patch];
+            if is_there && meeting_point(t, corners, self.mesh.triangles[n], self.mesh.corners(n)).is_some() {
+                visit(n);
+            }
+        });
+    }
+
+    /// Whether triangle `t` of the strip has no area or meets what is there.
+    pub fn meets(&self, t: [u32; 3]) -> bool {
+        if projection_axis(t.map(|v| self.mesh.vertices[v as usize])).is_none() {
+            return true;
+        }
+        let mut found = false;
+        self.meeting(t, |_| found = true);
+        found
+    }
+
+    fn conflict(&self, ribbons: &[Ribbon], number: usize, step: Step) -> Conflict {
+        let ribbon = &ribbons[number];
+        let triangle = ribbon.triangle(step);
+        let mut section = Vec::new();
+        self.meeting(triangle, |n| section.extend(n.checked_sub(self.patch)));
+        let (Step::Boundary(_, j) | Step::Rim(_, j)) = step;
+        let rim = match step {
+            Step::Boundary(..) => vec![ribbon.rim.vertices[j as usize]],
+            Step::Rim(..) => ribbon.rim.vertices[j as usize..=j as usize + 1].to_vec(),
+        };
+        Conflict { rim, section, at: self.mesh.vertices[triangle[2] as usize], ribbon: Some(number) }
+    }
+}
+
+/// Of each two triangles of the strip that meet the costlier one.
+fn costlier_of_pairs(
+    strip: &TriMesh,
+    steps: &[(usize, Step)],
+    ribbons: &[Ribbon],
+    run: &RunSettings,
+) -> Result<Vec<(usize, Step)>, Cancelled> {
+    let own = BoxTree::new(strip, (0..strip.triangles.len() as u32).into_par_iter());
+    let pairs = own.pairs(run, Vec::new, |found: &mut Vec<[u32; 2]>, a, b| {
+        let (va, vb) = (strip.triangles[a as usize], strip.triangles[b as usize]);
+        if meeting_point(va, strip.corners(a as usize), vb, strip.corners(b as usize)).is_some() {
+            found.push([a, b]);
+        }
+    })?;
+    let costlier = |pair: [u32; 2]| {
+        let [a, b] = pair.map(|t| steps[t as usize]);
+        if ribbons[a.0].cost_of(a.1) > ribbons[b.0].cost_of(b.1) { a } else { b }
+    };
+    Ok(pairs.into_iter().flatten().map(costlier).collect())
+}

@@ -1,0 +1,98 @@
+//! The solid of a surface on one lattice: the row of steps.
+
+use super::boundary::Boundary;
+use super::crossings;
+use super::nodes::Nodes;
+use super::open_mesh::OpenMesh;
+use super::rim::Reach;
+use super::rods::Rods;
+use super::settings::Resolved;
+use super::solid::Solid;
+use super::stitch;
+use super::unsuitable::Blocked;
+use super::{ThickenError, ThickenSettings, ThickenTimes, closed};
+use crate::distance::SignedDistance;
+use crate::error::Error;
+use crate::lattice::Lattice;
+use crate::mesh::{Topology, TriMesh};
+use crate::offset::{Length, OffsetSettings, VoxelSize, check_memory};
+use crate::run::{Phase, RunSettings};
+use std::time::Instant;
+
+/// Depth of the lid in voxels. Deeper, and less is left of a thin solid; less deep, and the strip between the patch and
+/// the section gets so narrow that a patch that is bent within a voxel pierces it.
+const LID: f64 = 0.5;
+
+/// Radius in voxels of the rods that join parts of S which touch in a vertex. A rod must hold nodes at each height, and the
+/// rim around it must stay apart from the vertex; much thicker, and it shows.
+const ROD: f64 = 1.5;
+
+/// Nodes of the band beyond the shell, in voxels: an edge that crosses the shell ends at most one beyond it.
+const BEYOND: f64 = 1.01;
+
+/// What stays the same on all lattices, and what they took.
+pub(super) struct Work<'a> {
+    pub settings: &'a ThickenSettings,
+    pub run: &'a RunSettings,
+    pub times: ThickenTimes,
+}
+
+impl Work<'_> {
+    /// Checks that a lattice fits into the memory that the settings allow.
+    pub fn check_memory(&self, patch: &TriMesh, at: Resolved) -> Result<(), Error> {
+        // The band lies around the patch, and reaches as far as the shell.
+        let band = OffsetSettings {
+            distance: Length::Units(0.0),
+            voxel: VoxelSize::Units(at.voxel),
+            half_width: at.thickness / at.voxel + BEYOND,
+            max_memory: self.settings.max_memory,
+            ..OffsetSettings::default()
+        };
+        check_memory(patch, &band)
+    }
+
+    /// The solid on one side of `surface`, whose triangles are its first ones.
+    pub fn on_lattice(&mut self, surface: &TriMesh, at: Resolved) -> Result<Result<TriMesh, Blocked>, Error> {
+        let Work { settings, run, ref mut times } = *self;
+        let Resolved { thickness, voxel } = at;
+        let started = Instant::now();
+        let topology = run.install(|| Topology::new(surface));
+        let boundary = Boundary::new(surface, &topology).map_err(ThickenError::from)?;
+        if boundary.is_empty() && settings.map.is_none() {
+            times.hierarchy += started.elapsed().as_secs_f64();
+            return Ok(Ok(closed::shell(surface, at, settings, times, run)?));
+        }
+        let distance = {
+            let _phase = run.phase(Phase::Hierarchy, 0);
+            run.install(|| SignedDistance::new(surface, &topology))
+        };
+        run.check()?;
+        times.hierarchy += started.elapsed().as_secs_f64();
+
+        let lattice = Lattice { voxel };
+        let started = Instant::now();
+        let nodes = Nodes::new(&distance, lattice, thickness + BEYOND * voxel, run)?;
+        let solid = Solid {
+            distance: &distance,
+            boundary: &boundary,
+            thickness,
+            map: settings.map.as_deref(),
+            lid: LID * voxel,
+            rods: &Rods::new(surface, &boundary, thickness, ROD * voxel),
+            lists: Some(&nodes.lists),
+        };
+        let (signs, triangles) = nodes.classify(&solid, lattice, run);
+        times.nodes += started.elapsed().as_secs_f64();
+
+        let started = Instant::now();
+        let found = crossings::crossings(&solid, lattice, &signs, &triangles, run)?;
+        let open = OpenMesh::new(&signs, &found, lattice, settings.precision, run)?;
+        times.faces += started.elapsed().as_secs_f64();
+
+        let started = Instant::now();
+        let reach = Reach { across: 1.5 * thickness, along: 4.0 * voxel };
+        let stitched = run.install(|| stitch::stitch(surface, &boundary, open, reach, run))?;
+        times.boundary += started.elapsed().as_secs_f64();
+        Ok(stitched)
+    }
+}

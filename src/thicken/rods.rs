@@ -1,0 +1,92 @@
+//! Rods below vertices in which parts of the surface touch: without them the parts would hang together by less than a voxel.
+
+use super::boundary::Boundary;
+use crate::mesh::TriMesh;
+use glam::DVec3;
+use std::collections::HashMap;
+
+/// The rods of a surface, found by place.
+#[derive(Debug)]
+pub(super) struct Rods {
+    rods: Vec<Rod>,
+    /// The rods near each cube, ascending.
+    near: HashMap<[i32; 3], Vec<u32>>,
+    /// Half the length of a rod.
+    length: f64,
+    radius: f64,
+    /// Side of the cubes.
+    side: f64,
+}
+
+#[derive(Debug)]
+struct Rod {
+    /// The vertex.
+    at: DVec3,
+    /// The unit normal there.
+    normal: DVec3,
+}
+
+impl Rods {
+    /// Rods of a length and radius in model units.
+    pub fn new(surface: &TriMesh, boundary: &Boundary, length: f64, radius: f64) -> Rods {
+        let mut all =
+            Rods { rods: Vec::new(), near: HashMap::new(), length, radius, side: 2.0 * (length + radius) };
+        for (number, &v) in (0u32..).zip(&boundary.touching) {
+            let at = DVec3::from(surface.vertices[v as usize]);
+            // No rod is longer than half a cube: eight of them hold it.
+            for corner in 0..8 {
+                let sign = |bit: i32| if corner >> bit & 1 == 1 { 0.25 } else { -0.25 };
+                let cube = all.cube(at + all.side * DVec3::new(sign(0), sign(1), sign(2)));
+                let near = all.near.entry(cube).or_default();
+                if near.last() != Some(&number) {
+                    near.push(number);
+                }
+            }
+            all.rods.push(Rod { at, normal: boundary.touching_normal(v) });
+        }
+        all
+    }
+
+    fn cube(&self, p: DVec3) -> [i32; 3] {
+        (p / self.side).floor().to_array().map(|x| x as i32)
+    }
+
+    /// The depth of a point in the first rod that it is in, and the normal there.
+    pub fn at(&self, p: DVec3) -> Option<(f64, DVec3)> {
+        if self.rods.is_empty() {
+            return None;
+        }
+        self.near.get(&self.cube(p))?.iter().find_map(|&n| {
+            let &Rod { at, normal } = &self.rods[n as usize];
+            let across = p - at;
+            let depth = -across.dot(normal);
+            let is_in = depth.abs() <= self.length && (across + normal * depth).length() <= self.radius;
+            is_in.then_some((depth, normal))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rod_is_found_from_everywhere_in_it() {
+        let mut rods = Rods { rods: Vec::new(), near: HashMap::new(), length: 1.0, radius: 0.2, side: 2.4 };
+        let at = DVec3::new(-0.3, 2.35, 7.1);
+        for corner in 0..8 {
+            let sign = |bit: i32| if corner >> bit & 1 == 1 { 0.6 } else { -0.6 };
+            let cube = rods.cube(at + DVec3::new(sign(0), sign(1), sign(2)));
+            rods.near.insert(cube, vec![0]);
+        }
+        rods.rods.push(Rod { at, normal: DVec3::X });
+        for x in [-0.99, -0.4, 0.0, 0.5, 0.99] {
+            for (y, z) in [(0.0, 0.19), (0.19, 0.0), (-0.13, 0.14), (0.0, 0.0)] {
+                let (depth, normal) = rods.at(at + DVec3::new(x, y, z)).unwrap();
+                assert!((depth + x).abs() < 1e-12 && normal == DVec3::X);
+            }
+            assert!(rods.at(at + DVec3::new(x, 0.0, 0.21)).is_none());
+        }
+        assert!(rods.at(at + DVec3::new(1.01, 0.0, 0.0)).is_none());
+    }
+}
