@@ -60,7 +60,7 @@ mod output;
 mod patch;
 mod polygon_edges;
 mod polygonize;
-mod qef;
+pub(crate) mod qef;
 mod recover;
 mod refine;
 mod region;
