@@ -5,7 +5,7 @@ use super::numbers::{bytes, length, resolution, tile, tolerance, voxel};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use exocarp::compare::Method;
 use exocarp::offset::{Length, SignMode, Tolerance};
-use exocarp::thicken::{Side, ThickenSettings};
+use exocarp::thicken::{SectionNormals, Side, ThickenSettings};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -163,6 +163,13 @@ pub(super) struct ThickenArguments {
     #[arg(long, value_name = "N", default_value_t = ThickenSettings::default().halvings)]
     #[arg(value_parser = clap::value_parser!(u32).range(0..=10))]
     pub resolve: u32,
+    /// Rounds of shape processing at most: flatter sections with sharper edges, and a shell nearer to its distance
+    #[arg(long, value_name = "N", default_value_t = ThickenSettings::default().rounds)]
+    #[arg(value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub rounds: u32,
+    /// The normals of the section in these rounds: of the walls on the boundary's edges, or of its faces, smoothed
+    #[arg(long, value_enum, default_value_t = Normals::Exact)]
+    pub section_normals: Normals,
     #[command(flatten)]
     pub more: OutputArguments,
 }
@@ -219,6 +226,24 @@ impl PatchSide {
         match self {
             PatchSide::Inner => Side::Inner,
             PatchSide::Outer => Side::Outer,
+        }
+    }
+}
+
+/// `--section-normals`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Normals {
+    /// Of the walls: in the plane of the patch's triangle, across its edge
+    Exact,
+    /// Of the faces, smoothed in each round
+    Smoothed,
+}
+
+impl Normals {
+    pub fn normals(self) -> SectionNormals {
+        match self {
+            Normals::Exact => SectionNormals::Exact,
+            Normals::Smoothed => SectionNormals::Smoothed,
         }
     }
 }

@@ -98,6 +98,8 @@ fn settings(arguments: &ThickenArguments, session: &Session) -> Result<ThickenSe
         side: arguments.side.side(),
         voxel,
         halvings: arguments.resolve,
+        rounds: arguments.rounds,
+        section_normals: arguments.section_normals.normals(),
         precision: precision(&arguments.output, arguments.more.f64)?,
         max_memory: session.max_memory,
         ..defaults
@@ -114,6 +116,7 @@ struct Settings {
     voxel: f64,
     /// `null` when the voxel size was given or follows from the thickness.
     resolution: Option<u32>,
+    rounds: u32,
     threads: usize,
 }
 
@@ -124,6 +127,7 @@ impl Settings {
             side: arguments.side.name(),
             voxel: engine.voxel,
             resolution: arguments.resolution,
+            rounds: arguments.rounds,
             threads: session.run.threads(),
         }
     }

@@ -30,6 +30,8 @@ pub(super) struct SolidCrossings {
     pub crossings: Crossings,
     /// By edge number.
     pub parts: Vec<Part>,
+    /// Where the edges cross, by edge number.
+    pub points: Vec<DVec3>,
 }
 
 /// Bisection ends at this length, in voxels: far below what the placement of a vertex shows, far above rounding.
@@ -52,7 +54,7 @@ pub(super) fn crossings(
     let numbers = run.install(|| EdgeNumbers::new(signs))?;
     let leaves: Vec<LeafId> = signs.leaves().filter(|&leaf| !numbers.range(leaf).is_empty()).collect();
     let phase = run.phase(Phase::Edges, leaves.len() as u64);
-    let found: Vec<Vec<(Crossing, Part)>> = run.install(|| {
+    let found: Vec<Vec<(Crossing, Part, DVec3)>> = run.install(|| {
         let in_leaf = |&leaf: &LeafId| {
             phase.advance(1)?;
             let leaf_nodes = LeafNodes { solid, lattice, signs, nodes, leaf };
@@ -60,8 +62,15 @@ pub(super) fn crossings(
         };
         leaves.par_iter().with_min_len(4).map(in_leaf).collect::<Result<_, Cancelled>>()
     })?;
-    let (samples, parts) = found.into_iter().flatten().unzip();
-    Ok(SolidCrossings { crossings: Crossings { numbers, samples }, parts })
+    let count = numbers.len();
+    let (mut samples, mut parts) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    let mut points = Vec::with_capacity(count);
+    for (sample, part, point) in found.into_iter().flatten() {
+        samples.push(sample);
+        parts.push(part);
+        points.push(point);
+    }
+    Ok(SolidCrossings { crossings: Crossings { numbers, samples }, parts, points })
 }
 
 struct LeafNodes<'a> {
@@ -81,7 +90,7 @@ struct End {
 }
 
 impl LeafNodes<'_> {
-    fn cross(&self, axis: Axis, number: usize) -> (Crossing, Part) {
+    fn cross(&self, axis: Axis, number: usize) -> (Crossing, Part, DVec3) {
         let origin = self.signs.origin(self.leaf);
         let (local, next) = {
             let local = Ijk::in_leaf(Ijk::default(), number);
@@ -92,7 +101,8 @@ impl LeafNodes<'_> {
         let low = End { t: 0.0, sample: self.node(local, edge.at(0.0)) };
         let high = End { t: 1.0, sample: self.node(next, edge.at(1.0)) };
         let low_is_inside = self.signs.inside(self.leaf)[number >> 6] >> (number & 63) & 1 == 1;
-        if low_is_inside { edge.cross(low, high) } else { edge.cross(high, low) }
+        let (crossing, part) = if low_is_inside { edge.cross(low, high) } else { edge.cross(high, low) };
+        (crossing, part, edge.at(crossing.t))
     }
 
     fn node(&self, local: Ijk, p: DVec3) -> Sample {

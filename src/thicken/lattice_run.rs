@@ -7,8 +7,9 @@ use super::open_mesh::OpenMesh;
 use super::rim::Reach;
 use super::rods::Rods;
 use super::settings::Resolved;
+use super::shape::{self, Face, Moving, Rounds, Shaped};
 use super::solid::Solid;
-use super::stitch;
+use super::stitch::{self, Stitched};
 use super::unsuitable::Blocked;
 use super::{ThickenError, ThickenSettings, ThickenTimes, closed};
 use crate::distance::SignedDistance;
@@ -17,6 +18,7 @@ use crate::lattice::Lattice;
 use crate::mesh::{Topology, TriMesh};
 use crate::offset::{Length, OffsetSettings, VoxelSize, check_memory};
 use crate::run::{Phase, RunSettings};
+use glam::DVec3;
 use std::time::Instant;
 
 /// Depth of the lid in voxels. Deeper, and less is left of a thin solid; less deep, and the strip between the patch and
@@ -35,6 +37,8 @@ pub(super) struct Work<'a> {
     pub settings: &'a ThickenSettings,
     pub run: &'a RunSettings,
     pub times: ThickenTimes,
+    /// What the last lattice's shape processing did.
+    pub shaped: Shaped,
 }
 
 impl Work<'_> {
@@ -53,7 +57,7 @@ impl Work<'_> {
 
     /// The solid on one side of `surface`, whose triangles are its first ones.
     pub fn on_lattice(&mut self, surface: &TriMesh, at: Resolved) -> Result<Result<TriMesh, Blocked>, Error> {
-        let Work { settings, run, ref mut times } = *self;
+        let Work { settings, run, ref mut times, ref mut shaped } = *self;
         let Resolved { thickness, voxel } = at;
         let started = Instant::now();
         let topology = run.install(|| Topology::new(surface));
@@ -93,6 +97,27 @@ impl Work<'_> {
         let reach = Reach { across: 1.5 * thickness, along: 4.0 * voxel };
         let stitched = run.install(|| stitch::stitch(surface, &boundary, open, reach, run))?;
         times.boundary += started.elapsed().as_secs_f64();
-        Ok(stitched)
+        let Stitched { mut mesh, edges } = match stitched {
+            Ok(stitched) => stitched,
+            Err(blocked) => return Ok(Err(blocked)),
+        };
+
+        let started = Instant::now();
+        let face = |&edge: &u32| Face {
+            part: found.parts[edge as usize],
+            point: found.points[edge as usize],
+            normal: DVec3::from(found.crossings.samples[edge as usize].normal.map(f64::from)),
+        };
+        let moving = Moving {
+            first: surface.triangles.len(),
+            faces: edges.iter().map(face).collect(),
+            first_vertex: surface.vertices.len() as u32,
+        };
+        let rounds = Rounds { most: settings.rounds, normals: settings.section_normals };
+        let precision = settings.precision;
+        let shape = || shape::process(&mut mesh, moving, &solid, voxel, precision, rounds, run);
+        *shaped = run.install(shape)?;
+        times.shape += started.elapsed().as_secs_f64();
+        Ok(Ok(mesh))
     }
 }

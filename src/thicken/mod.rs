@@ -14,6 +14,7 @@ mod check;
 mod closed;
 mod crossings;
 mod curve;
+mod embedding;
 mod fit;
 mod holes;
 mod lattice_run;
@@ -24,13 +25,14 @@ mod ribbon;
 mod rim;
 mod rods;
 mod settings;
+mod shape;
 mod solid;
 mod statistics;
 mod stitch;
 mod unsuitable;
 
-pub use settings::{Side, ThickenSettings};
-pub use statistics::{ThickenStatistics, ThickenTimes, TriangleCounts};
+pub use settings::{SectionNormals, Side, ThickenSettings};
+pub use statistics::{ShapeCounts, ThickenStatistics, ThickenTimes, TriangleCounts};
 pub use unsuitable::{Obstacle, PatchError, ThickenError};
 
 use crate::error::Error;
@@ -40,6 +42,7 @@ use boundary::Boundary;
 use holes::{Capped, Holes};
 use lattice_run::Work;
 use settings::Resolved;
+use shape::Shaped;
 use std::time::Instant;
 use unsuitable::Blocked;
 
@@ -76,7 +79,7 @@ pub fn thicken(
     let boundary = Boundary::new(&patch, &topology).map_err(ThickenError::from)?;
     run.install(|| check::check_patch(&patch, run))?.map_err(ThickenError::from)?;
     let holes = Holes::new(&patch, &topology, &boundary);
-    let mut work = Work { settings, run, times: ThickenTimes::default() };
+    let mut work = Work { settings, run, times: ThickenTimes::default(), shaped: Shaped::default() };
     work.times.hierarchy = started.elapsed().as_secs_f64();
     work.check_memory(&patch, resolved)?;
     let (mut halvings, mut at) = (0, resolved);
@@ -103,7 +106,10 @@ pub fn thicken(
     let kept = patch.triangles.len() as u64;
     let triangles = TriangleCounts { kept, split: 0, new: mesh.triangles.len() as u64 - kept };
     let Resolved { thickness, voxel } = at;
-    let statistics = ThickenStatistics { thickness, voxel, halvings, times: work.times, triangles, capped };
+    let Shaped { rounds, moves } = work.shaped;
+    let shape = ShapeCounts { rounds, moves };
+    let times = work.times;
+    let statistics = ThickenStatistics { thickness, voxel, halvings, times, triangles, capped, shape };
     Ok(ThickenResult { mesh, statistics })
 }
 

@@ -27,6 +27,8 @@ pub(super) struct OpenMesh {
     pub topology: Topology,
     /// Per triangle whether it is in the result.
     pub kept: Vec<bool>,
+    /// Per triangle the number of the lattice edge that it is at.
+    pub edges: Vec<u32>,
 }
 
 impl OpenMesh {
@@ -39,12 +41,11 @@ impl OpenMesh {
         run: &RunSettings,
     ) -> Result<OpenMesh, Error> {
         let (mesh, sizes) = contour_by_edge(signs, &found.crossings, lattice, precision, run)?;
-        let per_triangle = sizes.iter().zip(&found.parts);
-        let parts: Vec<Part> =
-            per_triangle.flat_map(|(&size, &part)| std::iter::repeat_n(part, usize::from(size))).collect();
+        let edges: Vec<u32> =
+            (0u32..).zip(&sizes).flat_map(|(n, &size)| std::iter::repeat_n(n, usize::from(size))).collect();
         let topology = run.install(|| Topology::new(&mesh));
-        let kept: Vec<bool> = parts.iter().map(|&part| part != Part::Lid).collect();
-        let mut open = OpenMesh { mesh, topology, kept };
+        let kept: Vec<bool> = edges.iter().map(|&n| found.parts[n as usize] != Part::Lid).collect();
+        let mut open = OpenMesh { mesh, topology, kept, edges };
         let at_rim = (0..open.mesh.vertices.len() as u32).filter(|&v| open.is_at_rim(v)).collect();
         open.open_pinches(at_rim);
         Ok(open)

@@ -17,6 +17,17 @@ pub enum Side {
     Outer,
 }
 
+/// The normals of the section in shape processing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SectionNormals {
+    /// Those of the walls that stand on the boundary's edges: in the plane of the triangle, across the edge.
+    #[default]
+    Exact,
+    /// Those of the faces, smoothed in each round (\[WC13\] section 4.3, which does not know the walls): rounder where the
+    /// boundary is jagged.
+    Smoothed,
+}
+
 /// What to make.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ThickenSettings {
@@ -33,6 +44,10 @@ pub struct ThickenSettings {
     /// How often the voxel size may be halved where the lattice is too coarse for the patch. Each time takes four times as
     /// long.
     pub halvings: u32,
+    /// Rounds of shape processing at most (\[WC13\] section 4.3, which makes 10 to 20); 0 leaves the contour as it is.
+    pub rounds: u32,
+    /// Which normals the section has in them.
+    pub section_normals: SectionNormals,
     /// Coordinates of the result.
     pub precision: Precision,
     /// Refuse to start what would need more memory than this, in bytes; `None` for what the system has available.
@@ -47,6 +62,8 @@ impl Default for ThickenSettings {
             side: Side::Inner,
             voxel: None,
             halvings: 1,
+            rounds: ROUNDS,
+            section_normals: SectionNormals::Exact,
             precision: Precision::F32,
             max_memory: None,
         }
@@ -60,6 +77,9 @@ pub(super) struct Resolved {
     pub thickness: f64,
     pub voxel: f64,
 }
+
+/// Rounds of shape processing when nothing else is said. A quarter of the way in each leaves 6% after ten.
+pub(crate) const ROUNDS: u32 = 10;
 
 /// Voxels per thickness when nothing else is said: twice what \[WC13\] Remark 1 asks for at least.
 const VOXELS_PER_THICKNESS: f64 = 4.0;

@@ -92,4 +92,23 @@ impl Solid<'_> {
             Place::Inside
         }
     }
+
+    /// How far a point below S is beyond the shell, negative above it; `None` where its closest point is on the boundary of S,
+    /// or on the other side.
+    pub fn off_shell(&self, p: DVec3) -> Option<f64> {
+        self.below(p).map(|sample| -sample.distance - self.thickness_at(&sample))
+    }
+
+    /// The point of the shell in line with such a point and its closest point.
+    pub fn onto_shell(&self, p: DVec3) -> Option<DVec3> {
+        let along = |sample: Sample| (p - sample.closest) * (self.thickness_at(&sample) / -sample.distance);
+        self.below(p).map(|sample| sample.closest + along(sample))
+    }
+
+    fn below(&self, p: DVec3) -> Option<Sample> {
+        let sample = self.sample(p, 0);
+        let is_below = sample.distance < -self.lid
+            && !self.boundary.holds(self.distance.mesh(), sample.triangle, sample.feature);
+        is_below.then_some(sample)
+    }
 }

@@ -17,6 +17,17 @@ pub struct ThickenStatistics {
     pub triangles: TriangleCounts,
     /// Holes that are too narrow for the lattice and were closed: a point of each.
     pub capped: Vec<[f64; 3]>,
+    /// What shape processing did.
+    pub shape: ShapeCounts,
+}
+
+/// Counts of shape processing (\[WC13\] section 4.3).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct ShapeCounts {
+    /// Rounds until nothing moved, or as many as were allowed.
+    pub rounds: u32,
+    /// Moves of vertices that were made.
+    pub moves: u64,
 }
 
 /// Triangles of the result by origin.

@@ -164,6 +164,15 @@ fn ribbon(
     Ribbon { boundary, rim, reach, forbidden: BTreeSet::new() }
 }
 
+/// A closed mesh.
+#[derive(Debug)]
+pub(super) struct Stitched {
+    /// The triangles of the patch, of the contour, of what joins them.
+    pub mesh: TriMesh,
+    /// The lattice edge of each triangle of the contour.
+    pub edges: Vec<u32>,
+}
+
 /// The patch, the section and the ribbons between them, if they can be joined without intersections.
 pub(super) fn stitch(
     patch: &TriMesh,
@@ -171,7 +180,7 @@ pub(super) fn stitch(
     mut open: OpenMesh,
     reach: Reach,
     run: &RunSettings,
-) -> Result<Result<TriMesh, Blocked>, Cancelled> {
+) -> Result<Result<Stitched, Blocked>, Cancelled> {
     close_strays(patch, boundary, &mut open, reach, Change::Both);
     let first = patch.vertices.len() as u32;
     let mut mesh = patch.clone();
@@ -231,5 +240,7 @@ pub(super) fn stitch(
     });
     mesh.triangles.extend(strip);
     super::open_mesh::without_idle_vertices(&mut mesh, first as usize);
-    Ok(Ok(mesh))
+    let kept = open.edges.iter().zip(&open.kept).filter(|&(_, &kept)| kept);
+    let edges = kept.map(|(&edge, _)| edge).collect();
+    Ok(Ok(Stitched { mesh, edges }))
 }

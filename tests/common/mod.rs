@@ -1,6 +1,8 @@
 //! Running the program.
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
+pub mod thickened;
+
 use std::path::Path;
 use std::process::{Command, Stdio};
 

@@ -1,0 +1,121 @@
+//! A finished solid whose vertices can be moved without making it intersect itself.
+//!
+//! As in the patches of the contour ([`contour`](crate::contour)): a vertex is moved only if the triangles at it keep an
+//! area, stay on their side, and meet neither another triangle nor each other, by exact predicates on the coordinates that
+//! will be written. So the solid is embedded afterwards, whatever it was moved for.
+
+use crate::geom::predicates::projection_axis;
+use crate::geom::triangle_pair::meeting_point;
+use crate::mesh::TriMesh;
+use crate::verify::boxes::BoxTree;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// A mesh without intersections, ready for moves.
+#[derive(Debug)]
+pub(super) struct Embedding<'a> {
+    mesh: &'a mut TriMesh,
+    /// Around the triangles as they were at first.
+    tree: BoxTree,
+    /// No vertex gets farther than this from where it was at first, along each axis; in model units.
+    reach: f64,
+}
+
+impl<'a> Embedding<'a> {
+    /// `mesh` must be free of intersections.
+    pub fn new(mesh: &'a mut TriMesh, reach: f64) -> Embedding<'a> {
+        let tree = BoxTree::new(mesh, (0..mesh.triangles.len() as u32).into_par_iter());
+        Embedding { mesh, tree, reach }
+    }
+
+    /// Where a vertex is.
+    pub fn at(&self, vertex: u32) -> DVec3 {
+        DVec3::from(self.mesh.vertices[vertex as usize])
+    }
+
+    /// The area vector of a triangle.
+    pub fn area(&self, triangle: u32) -> DVec3 {
+        let [a, b, c] = self.mesh.corners(triangle as usize).map(DVec3::from);
+        0.5 * (b - a).cross(c - a)
+    }
+
+    /// The vertices of a triangle.
+    pub fn vertices(&self, triangle: u32) -> [u32; 3] {
+        self.mesh.triangles[triangle as usize]
+    }
+
+    /// Moves a vertex that was at `first` to `to`, which must be rounded, if the mesh stays embedded; `star` are all
+    /// triangles at it.
+    pub fn try_move(&mut self, vertex: u32, star: &[u32], first: DVec3, to: DVec3) -> bool {
+        if (to - first).abs().max_element() > self.reach {
+            return false;
+        }
+        let from = self.mesh.vertices[vertex as usize];
+        let before: Vec<DVec3> = star.iter().map(|&t| self.area(t)).collect();
+        self.mesh.vertices[vertex as usize] = to.to_array();
+        let keeps_side = star.iter().zip(before).all(|(&t, before)| self.area(t).dot(before) > 0.0);
+        let fits = keeps_side && self.is_free(star);
+        if !fits {
+            self.mesh.vertices[vertex as usize] = from;
+        }
+        fits
+    }
+
+    /// Whether triangles meet nothing beyond what they share.
+    fn is_free(&self, star: &[u32]) -> bool {
+        let mesh = &*self.mesh;
+        let meet = |a: u32, b: u32| {
+            let [va, vb] = [a, b].map(|t| mesh.triangles[t as usize]);
+            meeting_point(va, mesh.corners(a as usize), vb, mesh.corners(b as usize)).is_some()
+        };
+        let is_apart = |n: usize| {
+            let t = star[n];
+            let corners = mesh.corners(t as usize);
+            if projection_axis(corners).is_none() || star[..n].iter().any(|&other| meet(t, other)) {
+                return false;
+            }
+            let [a, b, c] = corners.map(DVec3::from);
+            let (lo, hi) = (a.min(b).min(c), a.max(b).max(c));
+            let mut found = false;
+            // Half the longest side, a little for rounding, and how far others are from their boxes.
+            let margin = 0.500_001 * (hi - lo).max_element() + self.reach;
+            self.tree.near(lo.midpoint(hi), margin, |other| {
+                found = found || !star.contains(&other) && self.is_near(lo, hi, other) && meet(t, other);
+            });
+            !found
+        };
+        (0..star.len()).all(is_apart)
+    }
+
+    /// Whether a triangle's box meets another one.
+    fn is_near(&self, lo: DVec3, hi: DVec3, triangle: u32) -> bool {
+        let [a, b, c] = self.mesh.corners(triangle as usize).map(DVec3::from);
+        lo.cmple(a.max(b).max(c)).all() && a.min(b).min(c).cmple(hi).all()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::shapes;
+
+    #[test]
+    fn a_vertex_goes_where_there_is_room_and_no_farther() {
+        let mut cube = (shapes::by_name("box").unwrap().make)(4);
+        let first = cube.vertices.len() as u32;
+        // A triangle above the face z = 1, and a vertex in the middle of that face.
+        cube.vertices.extend([[-0.5, -0.5, 1.3], [0.5, -0.5, 1.3], [0.0, 0.5, 1.3]]);
+        cube.triangles.push([first, first + 1, first + 2]);
+        let v = (0..first).find(|&v| cube.vertices[v as usize] == [0.0, 0.0, 1.0]).unwrap();
+        let star: Vec<u32> =
+            (0..cube.triangles.len() as u32).filter(|&t| cube.triangles[t as usize].contains(&v)).collect();
+        let mut embedding = Embedding::new(&mut cube, 0.5);
+        let from = embedding.at(v);
+        let mut to = |z: f64, x: f64| embedding.try_move(v, &star, from, DVec3::new(x, 0.0, z));
+        assert!(to(1.2, 0.0));
+        assert!(!to(1.35, 0.0), "through the triangle");
+        assert!(!to(1.0, 0.6), "out of reach");
+        assert!(to(0.6, 0.1));
+        assert_eq!(embedding.at(v), DVec3::new(0.1, 0.0, 0.6));
+    }
+}
