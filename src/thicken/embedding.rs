@@ -68,29 +68,36 @@ impl<'a> Embedding<'a> {
             let [va, vb] = [a, b].map(|t| mesh.triangles[t as usize]);
             meeting_point(va, mesh.corners(a as usize), vb, mesh.corners(b as usize)).is_some()
         };
-        let is_apart = |n: usize| {
-            let t = star[n];
-            let corners = mesh.corners(t as usize);
-            if projection_axis(corners).is_none() || star[..n].iter().any(|&other| meet(t, other)) {
-                return false;
-            }
-            let [a, b, c] = corners.map(DVec3::from);
-            let (lo, hi) = (a.min(b).min(c), a.max(b).max(c));
-            let mut found = false;
-            // Half the longest side, a little for rounding, and how far others are from their boxes.
-            let margin = 0.500_001 * (hi - lo).max_element() + self.reach;
-            self.tree.near(lo.midpoint(hi), margin, |other| {
-                found = found || !star.contains(&other) && self.is_near(lo, hi, other) && meet(t, other);
-            });
-            !found
+        let is_sound = |n: usize| {
+            projection_axis(mesh.corners(star[n] as usize)).is_some()
+                && !star[..n].iter().any(|&other| meet(star[n], other))
         };
-        (0..star.len()).all(is_apart)
+        if !(0..star.len()).all(is_sound) {
+            return false;
+        }
+        let boxes: Vec<[DVec3; 2]> = star.iter().map(|&t| self.bounds(t)).collect();
+        let all = boxes.iter().copied().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        let Some([lo, hi]) = all else { return true };
+        let meets_box = |a: &[DVec3; 2], b: &[DVec3; 2]| a[0].cmple(b[1]).all() && b[0].cmple(a[1]).all();
+        let mut found = false;
+        // Half the longest side, a little for rounding, and how far others are from their boxes.
+        let margin = 0.500_001 * (hi - lo).max_element() + self.reach;
+        self.tree.near(lo.midpoint(hi), margin, |other| {
+            if found {
+                return;
+            }
+            let around = self.bounds(other);
+            let is_near = meets_box(&around, &[lo, hi]) && !star.contains(&other);
+            let near = star.iter().zip(&boxes).filter(|(_, own)| is_near && meets_box(&around, own));
+            found = near.into_iter().any(|(&t, _)| meet(t, other));
+        });
+        !found
     }
 
-    /// Whether a triangle's box meets another one.
-    fn is_near(&self, lo: DVec3, hi: DVec3, triangle: u32) -> bool {
+    /// The box around a triangle.
+    fn bounds(&self, triangle: u32) -> [DVec3; 2] {
         let [a, b, c] = self.mesh.corners(triangle as usize).map(DVec3::from);
-        lo.cmple(a.max(b).max(c)).all() && a.min(b).min(c).cmple(hi).all()
+        [a.min(b).min(c), a.max(b).max(c)]
     }
 }
 

@@ -3,7 +3,7 @@
 use super::boundary::Boundary;
 use super::cap::Polygon;
 use super::curve::Curve;
-use super::fit::Around;
+use super::fit::{Around, Conflict};
 use super::lids;
 use super::open_mesh::{Change, OpenMesh};
 use super::ribbon::{Ribbon, Side};
@@ -14,11 +14,36 @@ use crate::run::{Cancelled, RunSettings};
 use crate::verify::boxes::BoxTree;
 use glam::DVec3;
 use rayon::prelude::*;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// How often the section is cut back where no strip fits, by one ring of triangles at first and more each time: how deep
-/// the patch hangs into the solid there is no matter of the lattice.
-const CUTS: usize = 12;
+/// How often the section is cut back where no strip fits: how deep the patch hangs into the solid there is no matter of
+/// the lattice.
+const CUTS: usize = 24;
+
+/// So often each place has its own number of rings. Where that does not help, conflicts wander, and the same is cut away
+/// around all of them.
+const APART: usize = 12;
+
+/// Where the section was cut back, and how often. A place that needs many rings must not take them from others.
+struct CutPlaces {
+    places: Vec<(DVec3, usize)>,
+    /// Conflicts within this distance are at the same place, in model units.
+    near: f64,
+}
+
+impl CutPlaces {
+    /// The rings of triangles to cut away around each conflict: one more each time.
+    fn again(&mut self, conflicts: &[Conflict]) -> Vec<usize> {
+        let times = |conflict: &Conflict| {
+            let at = DVec3::from(conflict.at);
+            let near = self.places.iter().filter(|(place, _)| place.distance(at) <= self.near);
+            (at, near.map(|&(_, times)| times).max().unwrap_or(0))
+        };
+        let all: Vec<(DVec3, usize)> = conflicts.iter().map(times).collect();
+        self.places.extend(all.iter().map(|&(at, times)| (at, times + 1)));
+        all.into_iter().map(|(_, times)| times).collect()
+    }
+}
 
 /// Rims that run around no boundary loop are those of holes and islands where the lattice is too coarse for what is there: both
 /// are undone.
@@ -199,6 +224,7 @@ pub(super) fn stitch(
         close_strays(patch, boundary, &mut open, reach, Change::Drop);
     }
     let mut cuts = 0;
+    let mut cut_places = CutPlaces { places: Vec::new(), near: reach.along };
     let strip = loop {
         let Gaps { mut ribbons, lids } = match gaps(patch, boundary, &open, first, reach) {
             Ok(gaps) => gaps,
@@ -219,15 +245,21 @@ pub(super) fn stitch(
                 return Ok(Err(Blocked { obstacle: Obstacle::Ribbon, at, edges }));
             }
             Err(conflicts) => {
-                let mut dropped: Vec<usize> = Vec::new();
-                for conflict in conflicts {
+                let rings = cut_places.again(&conflicts);
+                let least = cuts.saturating_sub(APART) / 2;
+                // By the number of rings, so that each goes with its own.
+                let mut dropped: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+                for (conflict, rings) in conflicts.into_iter().zip(rings) {
+                    let dropped = dropped.entry(rings.max(least)).or_default();
                     dropped.extend(conflict.section);
                     for v in conflict.rim {
                         let star = open.topology.around_vertex(v - first);
                         dropped.extend(star.iter().map(|&t| t as usize));
                     }
                 }
-                open.drop_around(dropped, cuts / 2);
+                for (rings, triangles) in dropped {
+                    open.drop_around(triangles, rings);
+                }
                 close_strays(patch, boundary, &mut open, reach, Change::Drop);
                 cuts += 1;
             }
@@ -243,4 +275,19 @@ pub(super) fn stitch(
     let kept = open.edges.iter().zip(&open.kept).filter(|&(_, &kept)| kept);
     let edges = kept.map(|(&edge, _)| edge).collect();
     Ok(Ok(Stitched { mesh, edges }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rings_grow_where_cuts_do_not_help_and_nowhere_else() {
+        let conflict = |x: f64| Conflict { rim: vec![], section: vec![], at: [x, 0.0, 0.0], ribbon: None };
+        let mut cuts = CutPlaces { places: Vec::new(), near: 1.0 };
+        assert_eq!(cuts.again(&[conflict(0.0), conflict(0.5)]), [0, 0]);
+        assert_eq!(cuts.again(&[conflict(0.4), conflict(9.0)]), [1, 0]);
+        assert_eq!(cuts.again(&[conflict(-0.2), conflict(9.3), conflict(5.0)]), [2, 1, 0]);
+        assert_eq!(cuts.again(&[conflict(0.1), conflict(9.1)]), [3, 2]);
+    }
 }
