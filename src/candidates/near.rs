@@ -71,7 +71,7 @@ impl Entry {
 #[inline(always)]
 #[allow(clippy::manual_clamp, reason = "what is not a number becomes 0")]
 fn byte(x: f32) -> u8 {
-    (x.clamp(0.0, 255.0) + 8_388_608.0).to_bits() as u8
+    (x.max(0.0).min(255.0) + 8_388_608.0).to_bits() as u8
 }
 
 /// The base of a list with the given bounds.

@@ -134,6 +134,11 @@ impl LeafMesh {
                 continue;
             }
             let nodes = NodesNear::new(cells.signs.origin(leaf), voxel, &bounds);
+            debug_assert!(
+                self.triangles(leaf).all(|n| nodes.may_have(self.nodes[n])
+                    || !Bounds::around(self.corners(n)).meets(&bounds)),
+                "a triangle left its grid edge unseen"
+            );
             for number in self.numbers(leaf).filter(|&n| nodes.may_have(self.nodes[n])) {
                 let vertices = self.mesh.triangles[number];
                 if vertices == GONE {
