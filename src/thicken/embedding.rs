@@ -122,7 +122,8 @@ mod tests {
         assert!(to(1.2, 0.0));
         assert!(!to(1.35, 0.0), "through the triangle");
         assert!(!to(1.0, 0.6), "out of reach");
-        assert!(to(0.6, 0.1));
-        assert_eq!(embedding.at(v), DVec3::new(0.1, 0.0, 0.6));
+        assert!(!to(0.6, 0.1), "a triangle would turn to its other side");
+        assert!(to(0.9, 0.05));
+        assert_eq!(embedding.at(v), DVec3::new(0.05, 0.0, 0.9));
     }
 }
