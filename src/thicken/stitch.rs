@@ -18,11 +18,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// How often the section is cut back where no strip fits: how deep the patch hangs into the solid there is no matter of
 /// the lattice.
-const CUTS: usize = 24;
+const CUTS: usize = 32;
+
+/// Rounds of closing holes and islands at most: each can open the way to another one's.
+const STRAYS: usize = 12;
 
 /// So often each place has its own number of rings. Where that does not help, conflicts wander, and the same is cut away
 /// around all of them.
-const APART: usize = 12;
+const APART: usize = 20;
 
 /// Where the section was cut back, and how often. A place that needs many rings must not take them from others.
 struct CutPlaces {
@@ -32,7 +35,7 @@ struct CutPlaces {
 }
 
 impl CutPlaces {
-    /// The rings of triangles to cut away around each conflict: one more each time.
+    /// The rings of triangles to cut away around each conflict: one more with every second time.
     fn again(&mut self, conflicts: &[Conflict]) -> Vec<usize> {
         let times = |conflict: &Conflict| {
             let at = DVec3::from(conflict.at);
@@ -41,7 +44,7 @@ impl CutPlaces {
         };
         let all: Vec<(DVec3, usize)> = conflicts.iter().map(times).collect();
         self.places.extend(all.iter().map(|&(at, times)| (at, times + 1)));
-        all.into_iter().map(|(_, times)| times).collect()
+        all.into_iter().map(|(_, times)| times / 2).collect()
     }
 }
 
@@ -49,7 +52,7 @@ impl CutPlaces {
 /// are undone.
 fn close_strays(patch: &TriMesh, boundary: &Boundary, open: &mut OpenMesh, reach: Reach, change: Change) {
     let curve = (!boundary.is_empty()).then(|| Curve::new(patch, boundary));
-    for _ in 0..CUTS {
+    for _ in 0..STRAYS {
         let rims = open.rims();
         let is_stray: Vec<bool> = match &curve {
             None => vec![true; rims.len()],
@@ -286,8 +289,8 @@ mod tests {
         let conflict = |x: f64| Conflict { rim: vec![], section: vec![], at: [x, 0.0, 0.0], ribbon: None };
         let mut cuts = CutPlaces { places: Vec::new(), near: 1.0 };
         assert_eq!(cuts.again(&[conflict(0.0), conflict(0.5)]), [0, 0]);
-        assert_eq!(cuts.again(&[conflict(0.4), conflict(9.0)]), [1, 0]);
-        assert_eq!(cuts.again(&[conflict(-0.2), conflict(9.3), conflict(5.0)]), [2, 1, 0]);
-        assert_eq!(cuts.again(&[conflict(0.1), conflict(9.1)]), [3, 2]);
+        assert_eq!(cuts.again(&[conflict(0.4), conflict(9.0)]), [0, 0]);
+        assert_eq!(cuts.again(&[conflict(-0.2), conflict(9.3), conflict(5.0)]), [1, 0, 0]);
+        assert_eq!(cuts.again(&[conflict(0.1), conflict(9.1)]), [1, 1]);
     }
 }
