@@ -5,6 +5,9 @@ use crate::geom::triangle::{Side, Triangle};
 use glam::DVec3;
 use pulp::Simd;
 
+/// Eight points as structure of arrays.
+pub type EightPoints = [[f32; 8]; 3];
+
 /// Rounding of a distance from a [`FlatTriangle`], in units of the largest coordinate: 64 units in the last place of
 /// f32. The computation takes some twenty roundings of half a unit each. Too large only keeps more triangles; too
 /// small could lose the closest one.

@@ -25,7 +25,8 @@ mod nodes;
 #[cfg(test)]
 mod tests;
 
+pub use flat::EightPoints;
 pub use leaf_index::LeafIndex;
 pub use lists::{BlockLists, CandidateLists, block_in_leaf};
-pub use narrowing::{EightPoints, Narrowing, Nearest};
+pub use narrowing::{Narrowing, Nearest};
 pub use near::{Candidates, PlaneBound};

@@ -1,7 +1,7 @@
 //! The lists of one leaf, from the hierarchy down to blocks of 2^3 nodes.
 
 use super::PlaneBound;
-use super::flat::{FlatTriangle, ROUNDING};
+use super::flat::{EightPoints, FlatTriangle, ROUNDING};
 use super::nodes::{Nodes, Passing};
 use crate::filter::Block;
 use crate::geom::lanes::{F32s, P32s, in_lanes};
@@ -9,9 +9,6 @@ use crate::lattice::Lattice;
 use crate::ssvh::{Hit, Ssvh};
 use glam::DVec3;
 use pulp::{Simd, WithSimd};
-
-/// Eight points as structure of arrays.
-pub type EightPoints = [[f32; 8]; 3];
 
 /// Lists: of the leaf, of its halves, of their halves.
 const LEVELS: usize = 3;

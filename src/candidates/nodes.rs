@@ -1,7 +1,6 @@
 //! The closest triangles to the nodes of a block: in f32 who can be, in f64 who is.
 
-use super::flat::FlatTriangle;
-use super::narrowing::EightPoints;
+use super::flat::{EightPoints, FlatTriangle};
 use super::near::PlaneBound;
 use crate::geom::lanes::{F32s, F64s, P32s};
 use crate::ssvh::{Hit, NearestOfEight, Ssvh};

@@ -1,6 +1,7 @@
 //! The vertices on creases and corners, found by number, and what they say of the surface around them.
 
-use super::feature::{Feature, MAX_PLANES};
+use super::feature::Feature;
+use super::planes::MAX_PLANES;
 use super::qef::dot;
 use super::surface::{Creases, Surface};
 

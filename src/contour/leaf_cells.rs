@@ -1,12 +1,13 @@
 //! The vertices of the cells around the edges of one leaf, in a plain array: each cell is asked for by up to twelve
 //! edges, and finding it among all cells takes longer than what is done with it.
 
+use super::beside::beside;
 use super::cell::Edge;
 use super::cells::{CellCase, Cells};
 use super::face_vertex::FaceVertices;
 use super::numbering::CellId;
 use super::sheets::CaseTable;
-use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, LeafMask};
+use crate::band::{Axis, Ijk, LEAF_DIM, LeafId};
 use crate::edge::bits;
 
 /// Cells along each axis: those of the leaf, and the last ones of the leaf before.
@@ -46,7 +47,7 @@ impl<'a> LeafCells<'a> {
                 around.faces = Some(faces);
             }
             let active = cells.numbers.active(other);
-            let wanted = last_layers(active, delta);
+            let wanted = beside(active, delta);
             for number in bits(&wanted) {
                 let CellId(cell) = cells.numbers.id(other, number);
                 let local = Ijk::in_leaf(Ijk(delta.map(|d| LEAF_DIM * d)), number);
@@ -76,32 +77,5 @@ impl<'a> LeafCells<'a> {
         let cells = self.cells;
         let (leaf, cell) = cells.numbers.locate(cells.signs, self.leaf, local);
         faces.get(leaf, cell, cells.case(cell), axis, edge)
-    }
-}
-
-/// The bits of a mask in the last layers along the axes in which `delta` is -1.
-fn last_layers(mask: &LeafMask, [x, y, z]: [i32; 3]) -> LeafMask {
-    const Y_LAST: u64 = 0xff << 56;
-    const Z_LAST: u64 = 0x8080_8080_8080_8080;
-    let rows = if y == 0 { !0 } else { Y_LAST } & if z == 0 { !0 } else { Z_LAST };
-    std::array::from_fn(|n| if x == 0 || n == 7 { mask[n] & rows } else { 0 })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn last_layers_are_those_with_a_seven() {
-        for n in 0..8i32 {
-            let delta = [-(n >> 2), -(n >> 1 & 1), -(n & 1)];
-            let kept = last_layers(&[!0; 8], delta);
-            let found: Vec<usize> = bits(&kept).collect();
-            let is_last = |&n: &usize| {
-                let local = Ijk::in_leaf(Ijk::default(), n).0;
-                (0..3).all(|a| delta[a] == 0 || local[a] == 7)
-            };
-            assert_eq!(found, (0..512).filter(is_last).collect::<Vec<_>>(), "{delta:?}");
-        }
     }
 }

@@ -1,7 +1,8 @@
 //! The crossings of the edges of a leaf's cells, in a plain array: each crossing is asked for by up to four cells.
 
+use super::beside::beside;
 use super::cell::Edge;
-use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, LeafMask, SignField};
+use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, SignField};
 use crate::edge::{Crossing, Crossings, EdgeId, bits};
 
 /// Nodes along each axis: those of the leaf, and the first ones of the next.
@@ -45,7 +46,7 @@ impl<'a> LeafCrossings<'a> {
             let delta = [n >> 2, n >> 1 & 1, n & 1];
             let Some(other) = signs.neighbour(leaf, delta) else { continue };
             for axis in Axis::ALL.into_iter().filter(|&axis| delta[axis as usize] == 0) {
-                let wanted = first_layers(numbers.mask(other, axis), delta);
+                let wanted = beside(numbers.mask(other, axis), delta);
                 for number in bits(&wanted) {
                     let EdgeId(id) = numbers.get(other, axis, number).expect("it is in the mask");
                     let local = Ijk::in_leaf(Ijk(delta.map(|d| LEAF_DIM * d)), number);
@@ -63,31 +64,9 @@ impl<'a> LeafCrossings<'a> {
     }
 }
 
-/// The bits of a mask in the first layers along the axes in which `delta` is 1.
-fn first_layers(mask: &LeafMask, [x, y, z]: [i32; 3]) -> LeafMask {
-    const Y_FIRST: u64 = 0xff;
-    const Z_FIRST: u64 = 0x0101_0101_0101_0101;
-    let rows = if y == 0 { !0 } else { Y_FIRST } & if z == 0 { !0 } else { Z_FIRST };
-    std::array::from_fn(|n| if x == 0 || n == 0 { mask[n] & rows } else { 0 })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn first_layers_are_those_with_a_zero() {
-        for n in 0..8i32 {
-            let delta = [n >> 2, n >> 1 & 1, n & 1];
-            let kept = first_layers(&[!0; 8], delta);
-            let found: Vec<usize> = bits(&kept).collect();
-            let is_first = |&n: &usize| {
-                let local = Ijk::in_leaf(Ijk::default(), n).0;
-                (0..3).all(|a| delta[a] == 0 || local[a] == 0)
-            };
-            assert_eq!(found, (0..512).filter(is_first).collect::<Vec<_>>(), "{delta:?}");
-        }
-    }
 
     #[test]
     fn edges_of_a_cell_start_at_its_corners() {

@@ -2,10 +2,10 @@
 
 use super::ContourStatistics;
 use super::cells::{CellCase, Cells};
-use super::feature::Normals;
 use super::features::FeatureVertex;
 use super::leaf_crossings::LeafCrossings;
 use super::numbering::{CornerSigns, constant_case};
+use super::planes::Normals;
 use super::recover::Wish;
 use super::sheets::{Case, CaseTable};
 use super::smooth::{Batch, LANES};

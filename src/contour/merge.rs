@@ -1,10 +1,9 @@
 //! Edges merged to a vertex where another change is in the way.
 
 use super::editor::{Editor, middle};
-use super::feature::{along, distance2};
 use super::features::Sides;
 use super::patch::PatchTriangle;
-use super::qef::{cross, dot};
+use super::qef::{along, cross, distance2, dot};
 use crate::geom::triangle::Triangle;
 use glam::DVec3;
 

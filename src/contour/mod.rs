@@ -23,10 +23,10 @@
 //! | `grid` | the lattice rounded to the output's precision, before any decision |
 //! | `cell`, `sheets` | the cube, and its 256 masks: pairs on faces, sheets, caps and their walls |
 //! | `numbering` | active cells and their vertices, numbered by ranks in bit masks |
-//! | `cells`, `leaf_crossings`, `leaf_vertices` | all cells, leaf by leaf, with the crossings of their edges |
+//! | `cells`, `leaf_crossings`, `leaf_vertices` | all cells, leaf by leaf, with the crossings of their edges (`beside`: what of them is a neighbour's) |
 //! | `smooth` | the vertices of cells that see one smooth side, several at a time |
 //! | `qef`, `region`, `vertex` | the vertex of any other sheet within its cell and its walls |
-//! | `surface`, `feature`, `features` | the surface's creases and corners, found and remembered |
+//! | `surface`, `planes`, `feature`, `features` | the surface's creases and corners: what a cell sees of them, where they are, remembered |
 //! | `face_vertex` | vertices on faces where a connection would get in another sheet's way |
 //! | `leaf_cells`, `edge_polygon` | the cells and the polygon around each crossed edge |
 //! | `envelope`, `polygonize` | convex/concave analysis, and the triangles around an edge |
@@ -40,6 +40,7 @@
 //! the points where connections pass the cell's faces. On a face these triangles do not overlap, walls
 //! separate the cones of different sheets, and a disc of good triangles stays in its edge's tetrahedra.
 
+mod beside;
 mod cell;
 mod cells;
 mod cut_times;
@@ -58,6 +59,7 @@ mod numbering;
 mod order;
 mod output;
 mod patch;
+mod planes;
 mod polygon_edges;
 mod polygonize;
 pub(crate) mod qef;

@@ -48,13 +48,13 @@ impl Qef {
     #[inline]
     pub fn add(&mut self, point: [f64; 3], normal: [f64; 3]) {
         self.count += 1.0;
-        self.points = add(self.points, 1.0, point);
+        self.points = along(self.points, 1.0, point);
         let distance = dot(normal, point);
         if !distance.is_finite() {
             return;
         }
         self.matrix.add_outer(normal);
-        self.right = add(self.right, distance, normal);
+        self.right = along(self.right, distance, normal);
     }
 
     /// The mean of the added points, at least one.
@@ -70,7 +70,7 @@ impl Qef {
 
     /// The least point of the function, nearest to `mean` where it is not unique.
     pub fn minimiser_near(&self, mean: [f64; 3]) -> Minimiser {
-        let right = add(self.right, -1.0, self.matrix.times(mean));
+        let right = along(self.right, -1.0, self.matrix.times(mean));
         let eigen = self.matrix.eigen();
         let largest = eigen.values[0];
         let mut point = mean;
@@ -79,7 +79,7 @@ impl Qef {
             for ((value, vector), weight) in eigen.values.iter().zip(eigen.vectors).zip(&mut weights) {
                 if *value > CUTOFF * largest {
                     let step = dot(vector, right) / value;
-                    point = add(point, step, vector);
+                    point = along(point, step, vector);
                 }
                 *weight = (value / largest).max(CUTOFF);
             }
@@ -169,7 +169,7 @@ impl Minimiser {
         }
         let mut w = self.point;
         for i in 0..k {
-            w = add(w, multipliers[i], pulled[i]);
+            w = along(w, multipliers[i], pulled[i]);
         }
         Some(w)
     }
@@ -179,7 +179,7 @@ impl Minimiser {
         let mut out = [0.0; 3];
         for (vector, weight) in self.vectors.iter().zip(self.weights) {
             let part = dot(*vector, v) / weight;
-            out = add(out, part, *vector);
+            out = along(out, part, *vector);
         }
         out
     }
@@ -204,16 +204,23 @@ pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// a + scale b.
-#[inline]
-fn add(a: [f64; 3], scale: f64, b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| a[i] + scale * b[i])
-}
-
 /// The outer product.
 #[inline]
 pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// a + scale b.
+#[inline]
+pub fn along(a: [f64; 3], scale: f64, b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| a[i] + scale * b[i])
+}
+
+/// The square of the distance of two points.
+#[inline]
+pub fn distance2(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let d = along(a, -1.0, b);
+    dot(d, d)
 }
 
 #[cfg(test)]

@@ -2,9 +2,10 @@
 //! walls allow.
 
 use super::cell::{Edge, EdgeSet};
-use super::feature::{Asker, Feature, Normals, SPREAD, Samples, along, feature, nearest};
+use super::feature::{Asker, Feature, SPREAD, feature, nearest};
 use super::grid::Grid;
-use super::qef::{Minimiser, Qef};
+use super::planes::{Normals, Samples};
+use super::qef::{Minimiser, Qef, along};
 use super::region::Region;
 use super::sheets::Case;
 use super::surface::Surface;
