@@ -216,7 +216,8 @@ fn corner(ask: &mut Asker<'_>, planes: &Planes, third: Plane, mean: Point) -> Op
     (distance.abs() <= ON_SURFACE).then_some((point, planes))
 }
 
-/// Where the pieces of some planes meet, as near to `mean` as they do. The planes become those of the pieces there.
+/// Where the pieces of some planes meet, as near to `mean` as they do; `None` when no place stays. The planes become those of
+/// the pieces there.
 fn meet_pieces(ask: &Asker<'_>, planes: &mut Planes, mean: Point) -> Option<Point> {
     let mut point = planes.meet(mean)?;
     for _ in 0..PIECE_STEPS {
@@ -230,10 +231,10 @@ fn meet_pieces(ask: &Asker<'_>, planes: &mut Planes, mean: Point) -> Option<Poin
         let moved = distance2(next, point);
         point = next;
         if moved < STAYS[1] * STAYS[1] {
-            break;
+            return is_within_reach(point).then_some(point);
         }
     }
-    is_within_reach(point).then_some(point)
+    None
 }
 
 fn is_within_reach(point: Point) -> bool {

@@ -1,7 +1,7 @@
 //! Edges merged to a vertex where another change is in the way.
 
 use super::editor::{Editor, middle};
-use super::features::Sides;
+use super::features::{FeatureVertex, Sides};
 use super::patch::PatchTriangle;
 use super::qef::{along, cross, distance2, dot};
 use crate::geom::triangle::Triangle;
@@ -67,9 +67,7 @@ impl Editor<'_> {
         if self.star_error(vertex, &moved, limit) <= limit && self.patch.try_move(vertex, place) {
             return Some(Arrival::Moved);
         }
-        let mut neighbours: Vec<u32> = star.iter().flat_map(|t| t.vertices).collect();
-        neighbours.sort_unstable();
-        neighbours.dedup();
+        let neighbours = vertices_of(&star);
         let mut candidates = Vec::with_capacity(neighbours.len());
         for lost in neighbours {
             if !self.may_go(lost, place) {
@@ -84,6 +82,33 @@ impl Editor<'_> {
         candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut lost = candidates.into_iter().map(|(_, lost)| lost);
         lost.any(|lost| self.patch.try_collapse([vertex, lost], place)).then_some(Arrival::Merged)
+    }
+
+    /// Merges a vertex whose corner another one has taken into a neighbour, or brings it to the surface, if it is far from there.
+    /// Whether it was merged.
+    pub fn retire(&mut self, vertex: u32) -> bool {
+        let Some(from) = self.patch.position(vertex) else { return false };
+        let error = self.error(from, &Sides::NONE);
+        if error <= self.tolerance {
+            return false;
+        }
+        let mut candidates = Vec::new();
+        for kept in vertices_of(&self.triangles_at(vertex)) {
+            let Some(to) = self.patch.position(kept) else { continue };
+            let Some(star) = self.patch.star_if_collapsed([kept, vertex], to) else { continue };
+            let then = self.star_error(kept, &star, MENDED * error);
+            if then <= MENDED * error && self.may_go(vertex, to) {
+                candidates.push((then, kept, to));
+            }
+        }
+        candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if candidates.into_iter().any(|(_, kept, to)| self.patch.try_collapse([kept, vertex], to)) {
+            return true;
+        }
+        if let Some(place) = self.place_on_surface(vertex) {
+            self.patch.try_move(vertex, place);
+        }
+        false
     }
 
     fn triangles_at(&self, vertex: u32) -> Vec<PatchTriangle> {
@@ -157,7 +182,8 @@ impl Editor<'_> {
             let then = self.star_error(edge[0], &star, f64::INFINITY);
             let is_acceptable = then <= smooth || {
                 let star = self.triangles_at(edge[1]);
-                then <= share * self.star_error(edge[1], &star, then / share)
+                let of_vertex = self.error(corners[goes], &Sides::NONE);
+                then <= share * of_vertex.max(self.star_error(edge[1], &star, then / share))
             };
             if is_acceptable {
                 candidates.push((then, edge, to));
@@ -178,13 +204,16 @@ impl Editor<'_> {
         triangles.iter().any(is_near) || self.error(p, &Sides::NONE) > LOST
     }
 
-    /// Whether nothing is lost when a vertex is merged into another one at `place`: it is no corner, or the same one.
+    /// Whether nothing is lost when a vertex is merged into another one at `place`: it is no corner, or the same one, or
+    /// another vertex is in its corner.
     fn may_go(&self, vertex: u32, place: Point) -> bool {
-        !self.is_corner(vertex)
-            || self
-                .features
-                .get(vertex)
-                .is_some_and(|f| distance2(f.feature.point, place).sqrt() <= SAME_CORNER * self.grid.voxel())
+        if !self.is_corner(vertex) {
+            return true;
+        }
+        let same = SAME_CORNER * self.grid.voxel();
+        self.features.get(vertex).is_some_and(|FeatureVertex { feature, .. }| {
+            distance2(feature.point, place) <= same * same || self.patch.is_taken(feature.point, same, vertex)
+        })
     }
 
     /// How far the surface is from the triangles at a vertex, at most, in voxels, at the places that are looked at: as
@@ -206,4 +235,12 @@ impl Editor<'_> {
         }
         worst
     }
+}
+
+/// The vertices of some triangles, by number.
+fn vertices_of(triangles: &[PatchTriangle]) -> Vec<u32> {
+    let mut all: Vec<u32> = triangles.iter().flat_map(|t| t.vertices).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
 }

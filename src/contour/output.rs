@@ -6,7 +6,7 @@ use super::face_vertex::FaceVertices;
 use super::feature::Asker;
 use super::order::VertexRun;
 use super::polygonize::{Cut, CutMethod, EDGE_VERTEX, Fit, polygonize};
-use super::rounds::LeafMesh;
+use super::rounds::{AXIS, LeafMesh};
 use super::{ContourError, ContourStatistics, TooManyVertices};
 use crate::band::LeafId;
 use crate::mesh::TriMesh;
@@ -18,8 +18,8 @@ use rayon::prelude::*;
 struct LeafOutput {
     /// Vertex numbers; from the number of cell and face vertices on, they count the leaf's edge vertices.
     triangles: Vec<[u32; 3]>,
-    /// By triangle the lower node of the edge that it lies around.
-    nodes: Vec<u16>,
+    /// By triangle the edge that it lies around; see [`LeafMesh::edges`].
+    edges: Vec<u16>,
     edge_vertices: Vec<[f64; 3]>,
     /// Feature vertices of polygons that are far from the surface.
     far: Vec<u32>,
@@ -93,15 +93,22 @@ pub fn triangulate(
     let quads: u64 = owned().map(|(output, _)| output.quads).sum();
     let split: u64 = owned().map(|(output, _)| output.edge_vertices.len() as u64).sum();
     let face_vertices = owned().map(|(_, &leaf)| faces.range(leaf).len() as u64).sum();
-    let sizes = outputs.iter().flat_map(|output| output.sizes.iter().copied()).collect();
-    let nodes = outputs.iter().flat_map(|output| output.nodes.iter().copied()).collect();
     let mut triangles = vec![[0; 3]; count];
+    let mut edges = vec![0; count];
+    let mut sizes = vec![0; outputs.iter().map(|o| o.sizes.len()).sum()];
     let parts = cut(&mut triangles, outputs.iter().map(|o| o.triangles.len()));
-    outputs.into_par_iter().zip(firsts).zip(parts).with_min_len(16).for_each(|((output, first), part)| {
-        for (to, from) in part.iter_mut().zip(output.triangles) {
-            *to = from.map(|v| if v < shared { v } else { v + first });
-        }
-    });
+    let edge_parts = cut(&mut edges, outputs.iter().map(|o| o.edges.len()));
+    let size_parts = cut(&mut sizes, outputs.iter().map(|o| o.sizes.len()));
+    let parts = parts.into_par_iter().zip(edge_parts).zip(size_parts);
+    outputs.into_par_iter().zip(firsts).zip(parts).with_min_len(16).for_each(
+        |((output, first), ((triangles, edges), sizes))| {
+            for (to, from) in triangles.iter_mut().zip(output.triangles) {
+                *to = from.map(|v| if v < shared { v } else { v + first });
+            }
+            edges.copy_from_slice(&output.edges);
+            sizes.copy_from_slice(&output.sizes);
+        },
+    );
     let statistics = ContourStatistics {
         quads,
         diagonal: quads - split,
@@ -109,9 +116,9 @@ pub fn triangulate(
         face_vertices,
         ..ContourStatistics::default()
     };
-    let added = vec![Vec::new(); leaves.len()];
-    let mesh =
-        LeafMesh { mesh: TriMesh { vertices, triangles }, ranges, nodes, added, runs, gone: Vec::new() };
+    let (changed, added) = (vec![Vec::new(); leaves.len()], vec![Vec::new(); leaves.len()]);
+    let mesh = TriMesh { vertices, triangles };
+    let mesh = LeafMesh { mesh, ranges, edges, changed, added, runs, gone: Vec::new() };
     Ok(Triangulation { mesh, far, sizes, statistics })
 }
 
@@ -130,7 +137,7 @@ fn in_leaf(
     let count = cells.crossings.numbers.range(leaf).len();
     let mut output = LeafOutput {
         triangles: Vec::with_capacity(2 * count),
-        nodes: Vec::with_capacity(2 * count),
+        edges: Vec::with_capacity(2 * count),
         sizes: Vec::with_capacity(count),
         ..LeafOutput::default()
     };
@@ -166,7 +173,7 @@ fn in_leaf(
                 output.edge_vertices.push(hub());
             }
             output.sizes.push((output.triangles.len() - first) as u8);
-            output.nodes.resize(output.triangles.len(), number);
+            output.edges.resize(output.triangles.len(), number + AXIS * along.0 as u16);
             output.quads += 1;
         },
     );

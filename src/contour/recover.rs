@@ -180,6 +180,9 @@ impl Editor<'_> {
             let Some((vertex, arrival)) = self.reach(wish.vertex, *place) else { return true };
             recovered.moved += 1;
             recovered.merged += u64::from(arrival == Arrival::Merged);
+            if vertex != wish.vertex {
+                recovered.merged += u64::from(self.retire(wish.vertex));
+            }
             recovered.flipped += self.flip_around(vertex);
             false
         });

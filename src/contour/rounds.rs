@@ -10,7 +10,6 @@ use crate::lattice::{Ijk, LEAF_DIM};
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};
 use rayon::prelude::*;
-use std::ops::RangeInclusive;
 
 type Point = [f64; 3];
 
@@ -45,9 +44,11 @@ pub struct LeafMesh {
     pub mesh: TriMesh,
     /// The number of the first triangle of each leaf, and the number of all at the end.
     pub ranges: Vec<usize>,
-    /// The lower node of the grid edge that each triangle lies around, as its number in the leaf; [`ANYWHERE`] once the
-    /// triangle was changed.
-    pub nodes: Vec<u16>,
+    /// The grid edge that each triangle lies around: the number of its lower node in the leaf, and [`AXIS`] times its axis.
+    /// They ascend within a leaf, but for [`CHANGED`], which those of changed triangles have.
+    pub edges: Vec<u16>,
+    /// Triangles that were changed, by leaf: they may no longer lie around their grid edge.
+    pub changed: Vec<Vec<usize>>,
     /// Triangles that were added later, by leaf.
     pub added: Vec<Vec<usize>>,
     /// Which vertices belong to which leaf: each to one.
@@ -56,8 +57,11 @@ pub struct LeafMesh {
     pub gone: Vec<u32>,
 }
 
-/// Stands for the node of a triangle that no longer lies around its grid edge.
-pub const ANYWHERE: u16 = u16::MAX;
+/// What the axis counts in the number of a grid edge: as much as the nodes of a leaf.
+pub const AXIS: u16 = 512;
+
+/// Marks the edge of a triangle that may no longer lie around it.
+pub const CHANGED: u16 = 1 << 15;
 
 /// The vertices of a triangle that is gone: patches are not made when vertices have numbers that large.
 pub const GONE: [u32; 3] = [u32::MAX; 3];
@@ -128,27 +132,44 @@ impl LeafMesh {
             around(origin + Ijk(delta(n as i32).map(|d| LEAF_DIM * d)), voxel, STRAY)
         });
         let mut patch = Patch::new(bounds, homes);
+        let (mut found, mut corners) = (Vec::new(), Vec::new());
         for (home, around) in homes.iter().enumerate() {
             let Some(leaf) = cells.signs.neighbour(leaf, delta(home as i32)) else { continue };
             if !around.meets(&bounds) {
                 continue;
             }
             let nodes = NodesNear::new(cells.signs.origin(leaf), voxel, &bounds);
+            found.clear();
+            self.find(leaf, &nodes, &mut found);
             debug_assert!(
-                self.triangles(leaf).all(|n| nodes.may_have(self.nodes[n])
-                    || !Bounds::around(self.corners(n)).meets(&bounds)),
+                self.triangles(leaf)
+                    .all(|n| found.contains(&n) || !Bounds::around(self.corners(n)).meets(&bounds)),
                 "a triangle left its grid edge unseen"
             );
-            for number in self.numbers(leaf).filter(|&n| nodes.may_have(self.nodes[n])) {
-                let vertices = self.mesh.triangles[number];
-                if vertices == GONE {
-                    continue;
-                }
-                let corners = vertices.map(|v| self.mesh.vertices[v as usize]);
+            // All corners before any of them is looked at: they come from far in memory, side by side that way.
+            corners.clear();
+            corners.extend(found.iter().map(|&n| (self.mesh.triangles[n], self.corners(n))));
+            for (&number, &(vertices, corners)) in found.iter().zip(&corners) {
                 patch.add(PatchTriangle { number, vertices, corners, home: home as u8 });
             }
         }
         patch
+    }
+
+    /// Adds the numbers of the triangles of a leaf that may be where `nodes` tells.
+    fn find(&self, leaf: LeafId, nodes: &NodesNear, found: &mut Vec<usize>) {
+        let n = leaf.0 as usize;
+        let first = self.ranges[n];
+        let own = &self.edges[first..self.ranges[n + 1]];
+        let mut rest = 0;
+        for axis in 0..3 {
+            let before = |end: u16| own[rest..].partition_point(|&e| e & !CHANGED < AXIS * axis + end);
+            let (from, to) = (rest + before(nodes.first), rest + before(nodes.end));
+            found.extend((from..to).filter(|&t| nodes.may_have(own[t])).map(|t| first + t));
+            rest = to;
+        }
+        let moved = self.changed[n].iter().chain(&self.added[n]);
+        found.extend(moved.filter(|&&t| self.mesh.triangles[t] != GONE));
     }
 
     /// Whether every triangle is as near to its leaf as patches take it to be.
@@ -165,7 +186,6 @@ impl LeafMesh {
         let (first_vertex, first_triangle) = (mesh.vertices.len(), mesh.triangles.len());
         mesh.vertices.resize(first_vertex + changes.new_vertices as usize, [0.0; 3]);
         mesh.triangles.resize(first_triangle + changes.new_triangles, [0; 3]);
-        self.nodes.resize(mesh.triangles.len(), ANYWHERE);
         self.added[leaf.0 as usize].extend(first_triangle..mesh.triangles.len());
         if changes.new_vertices > 0 {
             self.runs.push(VertexRun { leaf, numbers: first_vertex as u32..mesh.vertices.len() as u32 });
@@ -178,7 +198,12 @@ impl LeafMesh {
         for (number, vertices) in changes.triangles {
             let number = triangle(number);
             mesh.triangles[number] = vertices.map_or(GONE, |v| v.map(vertex));
-            self.nodes[number] = ANYWHERE;
+            // Added ones have no edge.
+            if let Some(edge) = self.edges.get_mut(number).filter(|edge| **edge & CHANGED == 0) {
+                *edge |= CHANGED;
+                let leaf = self.ranges.partition_point(|&first| first <= number) - 1;
+                self.changed[leaf].push(number);
+            }
         }
         self.gone.extend(changes.gone_vertices.into_iter().map(vertex));
     }
@@ -192,9 +217,11 @@ impl LeafMesh {
 /// The nodes of a leaf whose grid edges may have triangles in a box. Looking at a node is far cheaper than at the corners
 /// of its triangles, which lie anywhere in memory.
 struct NodesNear {
-    /// The x that are in question.
-    x: RangeInclusive<i32>,
-    /// A bit for each y and z that is.
+    /// The first node that is in question: the first of those with its x.
+    first: u16,
+    /// The first one beyond, likewise.
+    end: u16,
+    /// A bit for each y and z that is in question.
     yz: u64,
 }
 
@@ -208,18 +235,18 @@ impl NodesNear {
             let local = |x: f64| x / voxel - f64::from(origin.0[a]);
             let low = (local(bounds.lo[a]) - WITHIN).ceil().max(0.0) as i32;
             let high = (local(bounds.hi[a]) + WITHIN).floor().min(f64::from(LEAF_DIM - 1)) as i32;
-            low..=high
+            low..high + 1
         });
         let yz =
             y.flat_map(|y| z.clone().map(move |z| 1u64 << (LEAF_DIM * y + z))).fold(0, |all, bit| all | bit);
-        NodesNear { x, yz }
+        let plane = |x: i32| (x.clamp(0, LEAF_DIM) * LEAF_DIM * LEAF_DIM) as u16;
+        NodesNear { first: plane(x.start), end: plane(x.end), yz }
     }
 
-    /// Whether triangles of this node may be there.
+    /// Whether triangles of this edge, whose x is in question, may be there and are where they were made.
     #[inline]
-    fn may_have(&self, node: u16) -> bool {
-        let (x, yz) = (i32::from(node >> 6), node & 63);
-        node == ANYWHERE || self.yz >> yz & 1 == 1 && self.x.contains(&x)
+    fn may_have(&self, edge: u16) -> bool {
+        edge & CHANGED == 0 && self.yz >> (edge & 63) & 1 == 1
     }
 }
 

@@ -1,7 +1,7 @@
 use super::*;
 use crate::band::LeafId;
 use crate::contour::order::VertexRun;
-use crate::contour::rounds::{ANYWHERE, LeafMesh};
+use crate::contour::rounds::{CHANGED, LeafMesh};
 use crate::mesh::{Topology, TriMesh, shapes};
 use crate::verify::tests::audit::audit;
 
@@ -24,9 +24,17 @@ fn patch(mesh: &TriMesh) -> Patch {
 fn changed(mesh: &TriMesh, patch: Patch) -> TriMesh {
     let ranges = vec![0, mesh.triangles.len()];
     let runs = vec![VertexRun { leaf: LeafId(0), numbers: 0..mesh.vertices.len() as u32 }];
-    let nodes = vec![ANYWHERE; mesh.triangles.len()];
-    let mut changed =
-        LeafMesh { mesh: mesh.clone(), ranges, nodes, added: vec![Vec::new()], gone: Vec::new(), runs };
+    let edges = vec![CHANGED; mesh.triangles.len()];
+    let changed = vec![(0..mesh.triangles.len()).collect()];
+    let mut changed = LeafMesh {
+        mesh: mesh.clone(),
+        ranges,
+        edges,
+        changed,
+        added: vec![Vec::new()],
+        gone: Vec::new(),
+        runs,
+    };
     changed.apply(LeafId(0), patch.changes);
     changed.into_ordered().mesh
 }
