@@ -76,6 +76,7 @@ mod vertex;
 pub use cut_times::{CutTimes, cut_times};
 pub use grid::Precision;
 pub use polygonize::CutMethod;
+pub use rounds::STRAY;
 pub use statistics::ContourStatistics;
 pub use surface::{Creases, Surface};
 
@@ -171,6 +172,9 @@ pub struct SlabContour {
     pub vertices: Range<usize>,
     /// The triangles that the slab owns. Some have vertices that its neighbours own.
     pub triangles: Range<usize>,
+    /// By leaf of the signs the number of its first triangle, and the number of all at the end. No triangle reaches farther
+    /// than [`STRAY`] voxels beyond its leaf.
+    pub firsts: Vec<usize>,
     /// Counts of what it owns.
     pub statistics: ContourStatistics,
 }
@@ -233,7 +237,7 @@ pub fn contour_slab(
         let (vertices, triangles) = mesh.of_leaves(first..first + owned);
         statistics.vertices = vertices.len() as u64;
         statistics.triangles = triangles.len() as u64;
-        Ok(SlabContour { mesh: mesh.mesh, vertices, triangles, statistics })
+        Ok(SlabContour { mesh: mesh.mesh, vertices, triangles, firsts: mesh.triangles, statistics })
     })
 }
 

@@ -26,7 +26,7 @@ pub struct OrderedMesh {
     /// By leaf the number of its first vertex, and the number of all at the end.
     vertices: Vec<usize>,
     /// The same for triangles.
-    triangles: Vec<usize>,
+    pub triangles: Vec<usize>,
 }
 
 impl OrderedMesh {

@@ -29,7 +29,7 @@ const NEAR: f64 = 2.25;
 /// How far a triangle may be changed to reach beyond the leaf that it belongs to, in voxels, by whichever leaf around
 /// it. The patch of a leaf is made of the triangles of this leaf and of its 26 neighbours: those of a leaf further
 /// away must not reach into it.
-const STRAY: f64 = 4.0;
+pub const STRAY: f64 = 4.0;
 
 const _: () = assert!(STRAY >= MARGIN, "a leaf must be able to change its own triangles");
 const _: () = assert!(STRAY + MARGIN < LEAF_DIM as f64, "a patch must hold all triangles in its bounds");

@@ -5,7 +5,7 @@ use super::stored_band::StoredBand;
 use super::surface::OffsetSurface;
 use super::{OffsetSettings, OffsetStatistics};
 use crate::band::{BandSettings, grid_nodes};
-use crate::contour::{ContourSettings, SlabContour, contour_slab};
+use crate::contour::{ContourSettings, STRAY, SlabContour, contour_slab};
 use crate::distance::SignedDistance;
 use crate::edge::{EdgeNumbers, EdgeSettings, NearTriangles, RootMethod, solve_by};
 use crate::error::Error;
@@ -48,8 +48,10 @@ pub(super) fn on_slab(
         ContourSettings { slab, reach: Some(reach(distance, band_settings)), ..settings.contour(lattice) };
     let surface = OffsetSurface { distance, r, lists: lists.as_ref(), vanishing: 1e-4 * lattice.voxel };
     let contour = contour_slab(&signs, &crossings, lattice, Some(&surface), &contour_settings, run)?;
-    drop((signs, crossings));
-    let lost = unseen::lost(suspects, &contour.mesh, run)?;
+    drop(crossings);
+    let triangles = contour.firsts.windows(2).map(|ends| ends[0]..ends[1]);
+    let leaves = signs.leaves().map(|leaf| signs.origin(leaf)).zip(triangles);
+    let lost = unseen::lost(suspects, &contour.mesh, leaves, STRAY, run)?;
     statistics.contour += contour.statistics;
     statistics.times.contour += started.elapsed().as_secs_f64();
     Ok(Some((contour, lost)))

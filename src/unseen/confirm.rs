@@ -8,6 +8,7 @@ use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// A suspect that is on the wrong side of the mesh by less than this, in voxels, is part of its error.
 pub(super) const DEEP: f64 = 0.05;
@@ -15,20 +16,26 @@ pub(super) const DEEP: f64 = 0.05;
 /// Triangles farther than this from a suspect, in voxels, say nothing of it: the nodes around it do.
 const REACH: f64 = 2.0;
 
-/// Triangles looked at between two looks at the run.
-const CHUNK: usize = 1 << 14;
-
-/// Keeps the suspects that `mesh`, the result or the part of it around them, has on the wrong side.
+/// Keeps the suspects that `mesh`, the result or the part of it around them, has on the wrong side. `leaves` gives the
+/// numbers of its triangles by the origin of their leaf, beyond which they reach by at most `stray` voxels.
 ///
 /// # Errors
 /// When the run is cancelled.
-pub fn lost(suspects: Suspects, mesh: &TriMesh, run: &RunSettings) -> Result<Suspects, Cancelled> {
+pub fn lost(
+    suspects: Suspects,
+    mesh: &TriMesh,
+    leaves: impl Iterator<Item = (Ijk, Range<usize>)>,
+    stray: f64,
+    run: &RunSettings,
+) -> Result<Suspects, Cancelled> {
     let Suspects { all, lattice: Some(lattice) } = suspects else { return Ok(suspects) };
     if all.is_empty() {
         return Ok(Suspects { all, lattice: Some(lattice) });
     }
     let near = NearMesh::new(&all, lattice);
-    let seen = run.install(|| near.look(mesh, run))?;
+    let around = LeafIndex::new(&around(&all, lattice, stray));
+    let leaves: Vec<_> = leaves.filter(|(origin, _)| around.get(*origin).is_some()).collect();
+    let seen = run.install(|| near.look(mesh, &leaves, run))?;
     let lost = all.iter().zip(seen).filter(|(suspect, nearest)| nearest.is_lost(suspect, lattice));
     Ok(Suspects { all: lost.map(|(suspect, _)| *suspect).collect(), lattice: Some(lattice) })
 }
@@ -72,8 +79,6 @@ struct NearMesh<'a> {
     lattice: Lattice,
     index: LeafIndex,
     by_leaf: Vec<Vec<u32>>,
-    /// The leaves that hold a corner of any triangle of up to a leaf's size that is near a suspect.
-    around: LeafIndex,
 }
 
 impl<'a> NearMesh<'a> {
@@ -86,29 +91,25 @@ impl<'a> NearMesh<'a> {
         for (suspect, n) in suspects.iter().zip(0..) {
             by_leaf[index.get(suspect.cell).expect("its own leaf")].push(n);
         }
-        let around = LeafIndex::new(&around(suspects, lattice));
-        NearMesh { suspects, lattice, index, by_leaf, around }
+        NearMesh { suspects, lattice, index, by_leaf }
     }
 
-    /// The nearest triangle within reach of each suspect.
-    fn look(&self, mesh: &TriMesh, run: &RunSettings) -> Result<Vec<Nearest>, Cancelled> {
-        let pairs: Vec<Vec<(u32, Nearest)>> = mesh
-            .triangles
-            .par_chunks(CHUNK)
-            .map(|triangles| {
+    /// The nearest triangle within reach of each suspect, of those of some leaves.
+    fn look(
+        &self,
+        mesh: &TriMesh,
+        leaves: &[(Ijk, Range<usize>)],
+        run: &RunSettings,
+    ) -> Result<Vec<Nearest>, Cancelled> {
+        let pairs: Vec<Vec<(u32, Nearest)>> = leaves
+            .par_iter()
+            .with_min_len(16)
+            .map(|(_, triangles)| {
                 run.check()?;
                 let mut pairs = Vec::new();
-                // Triangles come leaf by leaf.
-                let mut last = (Ijk([i32::MIN; 3]), false);
-                for &vertices in triangles {
-                    let corners = vertices.map(|v| DVec3::from(mesh.vertices[v as usize]));
-                    let leaf = leaf_at(corners[0], self.lattice);
-                    if leaf != last.0 {
-                        last = (leaf, self.around.get(leaf).is_some());
-                    }
-                    if last.1 || !self.is_small(&corners) {
-                        self.triangle(corners, vertices, &mut pairs);
-                    }
+                for n in triangles.clone() {
+                    let corners = mesh.corners(n).map(DVec3::from);
+                    self.triangle(corners, mesh.triangles[n], &mut pairs);
                 }
                 Ok(pairs)
             })
@@ -120,12 +121,6 @@ impl<'a> NearMesh<'a> {
             *own = own.nearer(found, slack);
         }
         Ok(nearest)
-    }
-
-    /// Whether a triangle extends over no more than a leaf along each axis.
-    fn is_small(&self, [a, b, c]: &[DVec3; 3]) -> bool {
-        let size = (a.max(*b).max(*c) - a.min(*b).min(*c)).max_element();
-        size <= f64::from(LEAF_DIM) * self.lattice.voxel
     }
 
     fn triangle(&self, corners: [DVec3; 3], vertices: [u32; 3], pairs: &mut Vec<(u32, Nearest)>) {
@@ -148,10 +143,10 @@ impl<'a> NearMesh<'a> {
     }
 }
 
-/// The leaves within reach of suspects and a leaf's side more, ascending.
-fn around(suspects: &[Suspect], lattice: Lattice) -> Vec<Ijk> {
+/// The leaves whose triangles can be within reach of suspects, ascending.
+fn around(suspects: &[Suspect], lattice: Lattice, stray: f64) -> Vec<Ijk> {
     // And a voxel, for rounding.
-    let margin = (REACH + f64::from(LEAF_DIM) + 1.0) * lattice.voxel;
+    let margin = (REACH + stray + 1.0) * lattice.voxel;
     let of = |s: &Suspect| leaves_between(s.at - margin, s.at + margin, lattice);
     let mut leaves: Vec<Ijk> = suspects.iter().flat_map(of).collect();
     leaves.sort_unstable();
