@@ -30,7 +30,7 @@
 //! | `face_vertex` | vertices on faces where a connection would get in another sheet's way |
 //! | `leaf_cells`, `edge_polygon` | the cells and the polygon around each crossed edge |
 //! | `envelope`, `polygonize` | convex/concave analysis, and the triangles around an edge |
-//! | `output` | all polygons, collected to a mesh |
+//! | `output`, `slots` | all polygons, collected to a mesh |
 //! | `order` | the finished mesh leaf by leaf, and the part that a slab owns |
 //! | `patch`, `editor`, `rounds` | changes of the finished mesh: the exact test, which to try, leaf by leaf |
 //! | `recover`, `refine` | vertices to places outside of their cells; the mesh to a tolerance |
@@ -68,6 +68,7 @@ mod refine;
 mod region;
 mod rounds;
 mod sheets;
+mod slots;
 mod smooth;
 mod statistics;
 mod surface;

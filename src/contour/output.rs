@@ -1,30 +1,29 @@
 //! The polygons around all crossed edges, cut into triangles and collected to a mesh.
 
-use super::cells::{Cells, split as cut};
+use super::cells::{Cells, split};
 use super::edge_polygon::{EdgePolygon, for_polygons, on_axis};
 use super::face_vertex::FaceVertices;
 use super::feature::Asker;
 use super::order::VertexRun;
 use super::polygonize::{Cut, CutMethod, EDGE_VERTEX, Fit, polygonize};
 use super::rounds::{AXIS, LeafMesh};
+use super::slots::{Slots, Triangles};
 use super::{ContourError, ContourStatistics, TooManyVertices};
 use crate::band::LeafId;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, PhaseGuard};
 use rayon::prelude::*;
 
-/// The triangles around the crossed edges that start in one leaf.
+/// What is found of the polygons around the crossed edges that start in one leaf, besides their triangles.
 #[derive(Debug, Default)]
 struct LeafOutput {
-    /// Vertex numbers; from the number of cell and face vertices on, they count the leaf's edge vertices.
-    triangles: Vec<[u32; 3]>,
-    /// By triangle the edge that it lies around; see [`LeafMesh::edges`].
-    edges: Vec<u16>,
+    /// How many triangles there are.
+    count: usize,
+    /// All of them, where they are more than their slots.
+    too_many: Option<Triangles>,
     edge_vertices: Vec<[f64; 3]>,
     /// Feature vertices of polygons that are far from the surface.
     far: Vec<u32>,
-    /// The number of triangles of each polygon.
-    sizes: Vec<u8>,
     /// Polygons.
     quads: u64,
 }
@@ -54,16 +53,24 @@ pub fn triangulate(
     phase: &PhaseGuard<'_>,
 ) -> Result<Triangulation, ContourError> {
     let leaves: Vec<LeafId> = cells.signs.leaves().collect();
+    let edges = |leaf: LeafId| cells.crossings.numbers.range(leaf).len();
+    let mut sizes = vec![0; leaves.iter().map(|&leaf| edges(leaf)).sum()];
+    // Nearly all edges have two triangles.
+    let slots = || leaves.iter().map(|&leaf| 2 * edges(leaf));
+    let mut triangles = Triangles::with_slots(2 * sizes.len());
+    let (corner_slots, edge_slots) = triangles.split(slots());
+    let size_slots = split(&mut sizes, leaves.iter().map(|&leaf| edges(leaf)));
+    let slices = corner_slots.into_par_iter().zip(edge_slots).zip(size_slots);
     let mut outputs: Vec<LeafOutput> = leaves
         .par_iter()
+        .zip(slices)
         .with_min_len(16)
-        .map(|&leaf| {
+        .map(|(&leaf, ((corners, edges), sizes))| {
             phase.advance(1)?;
-            Ok(in_leaf(cells, faces, &vertices, method, leaf))
+            Ok(in_leaf(cells, faces, &vertices, method, leaf, Slots::new(corners, edges), sizes))
         })
         .collect::<Result<_, Cancelled>>()?;
 
-    let count: usize = outputs.iter().map(|o| o.triangles.len()).sum();
     let hubs: usize = outputs.iter().map(|o| o.edge_vertices.len()).sum();
     // The number that stands for an edge vertex must stay free.
     if (vertices.len() + hubs) as u64 >= u64::from(EDGE_VERTEX) {
@@ -71,44 +78,31 @@ pub fn triangulate(
     }
     let shared = vertices.len() as u32;
     vertices.reserve_exact(hubs);
-    let mut firsts = Vec::with_capacity(outputs.len());
-    let mut ranges = Vec::with_capacity(outputs.len() + 1);
-    let mut next = 0;
+    let counts: Vec<usize> = outputs.iter().map(|output| output.count).collect();
+    let ranges = triangles.close_up(slots(), &counts);
     let cell_runs = leaves.iter().map(|&leaf| (leaf, as_u32(cells.numbers.vertex_range(leaf))));
     let face_runs = leaves.iter().map(|&leaf| (leaf, faces.range(leaf)));
     let mut runs: Vec<VertexRun> =
         cell_runs.chain(face_runs).map(|(leaf, numbers)| VertexRun { leaf, numbers }).collect();
-    for (output, &leaf) in outputs.iter().zip(&leaves) {
-        ranges.push(next);
-        next += output.triangles.len();
+    for ((output, &leaf), &start) in outputs.iter_mut().zip(&leaves).zip(&ranges) {
+        if let Some(own) = output.too_many.take() {
+            triangles.put(start, &own);
+        }
         let first = vertices.len() as u32;
-        firsts.push(first - shared);
+        if !output.edge_vertices.is_empty() {
+            for vertex in triangles.corners[start..start + output.count].as_flattened_mut() {
+                *vertex += if *vertex < shared { 0 } else { first - shared };
+            }
+        }
         vertices.extend_from_slice(&output.edge_vertices);
         runs.push(VertexRun { leaf, numbers: first..vertices.len() as u32 });
     }
     runs.retain(|run| !run.numbers.is_empty());
-    ranges.push(next);
     let far = outputs.iter_mut().map(|output| std::mem::take(&mut output.far)).collect();
     let owned = || outputs.iter().zip(&leaves).filter(|(_, leaf)| cells.owns(**leaf));
     let quads: u64 = owned().map(|(output, _)| output.quads).sum();
     let split: u64 = owned().map(|(output, _)| output.edge_vertices.len() as u64).sum();
     let face_vertices = owned().map(|(_, &leaf)| faces.range(leaf).len() as u64).sum();
-    let mut triangles = vec![[0; 3]; count];
-    let mut edges = vec![0; count];
-    let mut sizes = vec![0; outputs.iter().map(|o| o.sizes.len()).sum()];
-    let parts = cut(&mut triangles, outputs.iter().map(|o| o.triangles.len()));
-    let edge_parts = cut(&mut edges, outputs.iter().map(|o| o.edges.len()));
-    let size_parts = cut(&mut sizes, outputs.iter().map(|o| o.sizes.len()));
-    let parts = parts.into_par_iter().zip(edge_parts).zip(size_parts);
-    outputs.into_par_iter().zip(firsts).zip(parts).with_min_len(16).for_each(
-        |((output, first), ((triangles, edges), sizes))| {
-            for (to, from) in triangles.iter_mut().zip(output.triangles) {
-                *to = from.map(|v| if v < shared { v } else { v + first });
-            }
-            edges.copy_from_slice(&output.edges);
-            sizes.copy_from_slice(&output.sizes);
-        },
-    );
     let statistics = ContourStatistics {
         quads,
         diagonal: quads - split,
@@ -116,6 +110,7 @@ pub fn triangulate(
         face_vertices,
         ..ContourStatistics::default()
     };
+    let Triangles { corners: triangles, edges } = triangles;
     let (changed, added) = (vec![Vec::new(); leaves.len()], vec![Vec::new(); leaves.len()]);
     let mesh = TriMesh { vertices, triangles };
     let mesh = LeafMesh { mesh, ranges, edges, changed, added, runs, gone: Vec::new() };
@@ -133,14 +128,12 @@ fn in_leaf(
     vertices: &[[f64; 3]],
     method: CutMethod,
     leaf: LeafId,
+    mut slots: Slots<'_>,
+    sizes: &mut [u8],
 ) -> LeafOutput {
-    let count = cells.crossings.numbers.range(leaf).len();
-    let mut output = LeafOutput {
-        triangles: Vec::with_capacity(2 * count),
-        edges: Vec::with_capacity(2 * count),
-        sizes: Vec::with_capacity(count),
-        ..LeafOutput::default()
-    };
+    let mut output = LeafOutput::default();
+    let mut triangles = Vec::new();
+    let mut sizes = sizes.iter_mut();
     let grid = &cells.grid;
     for_polygons(
         cells,
@@ -148,8 +141,8 @@ fn in_leaf(
         vertices,
         leaf,
         |EdgePolygon { polygon, envelope, fit, piece, node, number, along }| {
-            let first = output.triangles.len();
-            let cut = polygonize(&polygon, &envelope, &fit, method, &mut output.triangles);
+            triangles.clear();
+            let cut = polygonize(&polygon, &envelope, &fit, method, &mut triangles);
             let hub = || grid.between_walls(node, on_axis(along.0, grid.clamp(along.1)));
             if let Some(surface) = cells.surface
                 && !fit.sides.is_empty()
@@ -157,26 +150,30 @@ fn in_leaf(
                 let corners = polygon.corners();
                 let position = |v| corners.iter().find(|c| c.vertex == v).map_or_else(hub, |c| c.position);
                 let mut ask = Asker { surface, origin: fit.point, voxel: grid.voxel(), piece };
-                let far = is_far(&output.triangles[first..], position, &fit, &mut ask);
+                let far = is_far(&triangles, position, &fit, &mut ask);
                 output.far.extend(corners.iter().filter_map(|corner| {
                     let is_feature = cells.features.get(corner.vertex).is_some();
                     (far && is_feature || is_far_at(corner.position, &fit, &mut ask)).then_some(corner.vertex)
                 }));
             }
             if cut == Cut::Split {
+                // From the number of cell and face vertices on, they count the leaf's edge vertices for now.
                 let vertex = (vertices.len() + output.edge_vertices.len()) as u32;
-                for corner in output.triangles[first..].as_flattened_mut() {
+                for corner in triangles.as_flattened_mut() {
                     if *corner == EDGE_VERTEX {
                         *corner = vertex;
                     }
                 }
                 output.edge_vertices.push(hub());
             }
-            output.sizes.push((output.triangles.len() - first) as u8);
-            output.edges.resize(output.triangles.len(), number + AXIS * along.0 as u16);
+            slots.extend(&triangles, number + AXIS * along.0 as u16);
+            if let Some(size) = sizes.next() {
+                *size = triangles.len() as u8;
+            }
             output.quads += 1;
         },
     );
+    (output.count, output.too_many) = slots.finish();
     output
 }
 
