@@ -2,7 +2,7 @@
 
 use super::boundary::Boundary;
 use super::crossings;
-use super::nodes::Nodes;
+use super::nodes::{Extent, Nodes};
 use super::open_mesh::OpenMesh;
 use super::rim::Reach;
 use super::rods::Rods;
@@ -75,7 +75,13 @@ impl Work<'_> {
 
         let lattice = Lattice { voxel };
         let started = Instant::now();
-        let nodes = Nodes::new(&distance, lattice, thickness + BEYOND * voxel, run)?;
+        let thinnest = settings.map.iter().flatten().copied().fold(thickness, f64::min);
+        let extent = Extent {
+            reach: thickness + BEYOND * voxel,
+            above: (BEYOND - LID) * voxel,
+            inside: [(LID + BEYOND) * voxel, thinnest - BEYOND * voxel],
+        };
+        let (nodes, lists) = Nodes::new(&distance, &boundary, lattice, extent, run)?;
         let solid = Solid {
             distance: &distance,
             boundary: &boundary,
@@ -83,7 +89,7 @@ impl Work<'_> {
             map: settings.map.as_deref(),
             lid: LID * voxel,
             rods: &Rods::new(surface, &boundary, thickness, ROD * voxel),
-            lists: Some(&nodes.lists),
+            lists: Some(&lists),
         };
         let (signs, triangles) = nodes.classify(&solid, lattice, run);
         times.nodes += started.elapsed().as_secs_f64();
