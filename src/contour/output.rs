@@ -135,6 +135,7 @@ fn in_leaf(
         ..LeafOutput::default()
     };
     let grid = &cells.grid;
+    let is_open = cells.crossings.numbers.is_open();
     for_polygons(
         cells,
         faces,
@@ -142,6 +143,10 @@ fn in_leaf(
         leaf,
         |EdgePolygon { polygon, envelope, fit, piece, node, number, along }| {
             let first = output.triangles.len();
+            if is_open && polygon.corners().iter().any(|corner| corner.position[0].is_nan()) {
+                output.sizes.push(0);
+                return;
+            }
             let cut = polygonize(&polygon, &envelope, &fit, method, &mut output.triangles);
             let hub = || grid.between_walls(node, on_axis(along.0, grid.clamp(along.1)));
             if let Some(surface) = cells.surface

@@ -19,6 +19,7 @@ mod fit;
 mod holes;
 mod lattice_run;
 mod lids;
+mod near_nodes;
 mod nodes;
 mod open_mesh;
 mod ribbon;

@@ -172,7 +172,10 @@ impl OpenMesh {
                 return None;
             }
             for side in Side::ALL {
-                for (other, _) in self.topology.around_edge(t, side).skip(1) {
+                let mut beside = self.topology.around_edge(t, side).skip(1).peekable();
+                // The rest of a large part of the lid is not there.
+                beside.peek()?;
+                for (other, _) in beside {
                     if self.kept[other as usize] != kept || parts[other as usize] == number {
                         continue;
                     }
@@ -210,21 +213,4 @@ impl OpenMesh {
         }
         rims
     }
-}
-
-/// Drops vertices from number `first` on that no triangle has.
-pub(super) fn without_idle_vertices(mesh: &mut TriMesh, first: usize) {
-    let mut used = vec![false; mesh.vertices.len()];
-    mesh.triangles.as_flattened().iter().for_each(|&v| used[v as usize] = true);
-    let mut numbers: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
-    let mut next = first;
-    for v in first..mesh.vertices.len() {
-        numbers[v] = next as u32;
-        if used[v] {
-            mesh.vertices[next] = mesh.vertices[v];
-            next += 1;
-        }
-    }
-    mesh.vertices.truncate(next);
-    mesh.triangles.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
 }

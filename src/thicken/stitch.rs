@@ -274,7 +274,7 @@ pub(super) fn stitch(
         number <= patch_count || open.kept[number - 1 - patch_count]
     });
     mesh.triangles.extend(strip);
-    super::open_mesh::without_idle_vertices(&mut mesh, first as usize);
+    mesh.drop_idle_vertices(first as usize);
     let kept = open.edges.iter().zip(&open.kept).filter(|&(_, &kept)| kept);
     let edges = kept.map(|(&edge, _)| edge).collect();
     Ok(Ok(Stitched { mesh, edges }))
