@@ -94,8 +94,7 @@ impl Around<'_> {
         let corners = t.map(|v| self.mesh.vertices[v as usize]);
         let [a, b, c] = corners.map(DVec3::from);
         let (lo, hi) = (a.min(b).min(c), a.max(b).max(c));
-        // Half the longest side, and a little for rounding.
-        self.tree.near(lo.midpoint(hi), 0.500_001 * (hi - lo).max_element(), |n| {
+        self.tree.meeting([lo, hi], |n| {
             let n = n as usize;
             let is_there = n < self.patch || self.kept[n - self.patch];
             if is_there && meeting_point(t, corners, self.mesh.triangles[n], self.mesh.corners(n)).is_some() {
