@@ -6,6 +6,7 @@ use crate::geom::triangle_pair::meeting_point;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};
 use crate::verify::boxes::BoxTree;
+use glam::DVec3;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -28,15 +29,26 @@ pub(super) fn meeting_patch(
     patch: u32,
     run: &RunSettings,
 ) -> Result<BTreeMap<u32, [f64; 3]>, Cancelled> {
-    let found = tree.pairs(run, Vec::new, |found: &mut Vec<(u32, [f64; 3])>, a, b| {
-        if (a < patch) == (b < patch) {
-            return;
-        }
-        let (va, vb) = (mesh.triangles[a as usize], mesh.triangles[b as usize]);
-        if let Some(at) = meeting_point(va, mesh.corners(a as usize), vb, mesh.corners(b as usize)) {
-            found.push((a.max(b), at));
-        }
-    })?;
+    let found = (0..patch)
+        .into_par_iter()
+        .with_min_len(64)
+        .map(|a| {
+            run.check()?;
+            let corners = mesh.corners(a as usize);
+            let [p, q, r] = corners.map(DVec3::from);
+            let mut found = Vec::new();
+            tree.meeting([p.min(q).min(r), p.max(q).max(r)], |b| {
+                if b < patch {
+                    return;
+                }
+                let (va, vb) = (mesh.triangles[a as usize], mesh.triangles[b as usize]);
+                if let Some(at) = meeting_point(va, corners, vb, mesh.corners(b as usize)) {
+                    found.push((b, at));
+                }
+            });
+            Ok(found)
+        })
+        .collect::<Result<Vec<_>, Cancelled>>()?;
     let mut all: Vec<_> = found.into_iter().flatten().collect();
     // The order of tasks is not that of the triangles.
     all.sort_by(|a, b| b.partial_cmp(a).unwrap_or(Ordering::Equal));
