@@ -80,10 +80,21 @@ pub fn build_filtered<E: From<Cancelled> + Send>(
     settings: &BandSettings,
     filters: &FilterSettings,
     run: &RunSettings,
+    sink: impl FnMut(LeafBatch) -> Result<(), E> + Send,
+) -> Result<FilterStatistics, E> {
+    build_with(distance, settings, filters, None, run, sink)
+}
+
+fn build_with<E: From<Cancelled> + Send>(
+    distance: &SignedDistance,
+    settings: &BandSettings,
+    filters: &FilterSettings,
+    below: Option<Below<'_>>,
+    run: &RunSettings,
     mut sink: impl FnMut(LeafBatch) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
     let Plan { filter, boxes, mut statistics } = Plan::new(distance, settings, filters);
-    let worker = Worker { filter, settings: *settings };
+    let worker = Worker { filter, settings: *settings, below };
     let phase = run.phase(Phase::Band, boxes.len() as u64);
     run.install(|| {
         let mut ready: Vec<LeafBatch> = Vec::new();
@@ -103,6 +114,35 @@ pub fn build_filtered<E: From<Cancelled> + Send>(
         }
         Ok(statistics)
     })
+}
+
+/// What is wanted of the band around an open mesh, for a solid on its negative side.
+#[derive(Clone, Copy, Debug)]
+pub struct Below<'a> {
+    /// Nodes more than this over the planes of all triangles that can be closest to them are left out, in model units:
+    /// whatever feature of these triangles they are closest to, they are on its positive side.
+    pub above: f64,
+    /// Of nodes that have a distance between these and are under the planes of all triangles that can be closest to them, none
+    /// of which is at the boundary, only that is wanted.
+    pub inside: [f64; 2],
+    /// Per triangle whether a vertex of it is on the boundary.
+    pub at_boundary: &'a [bool],
+}
+
+/// The band around an open mesh, `settings.r` being zero. Distances go without signs, since those of an open mesh jump where
+/// there is no surface; `values` stay empty, and `inside` and `inside_blocks` hold the nodes that are known to be inside.
+/// Every block with another node in the band has its list.
+///
+/// # Errors
+/// Cancellation, or what `sink` returns.
+pub fn build_below<E: From<Cancelled> + Send>(
+    distance: &SignedDistance,
+    settings: &BandSettings,
+    below: Below<'_>,
+    run: &RunSettings,
+    sink: impl FnMut(LeafBatch) -> Result<(), E> + Send,
+) -> Result<FilterStatistics, E> {
+    build_with(distance, settings, &FilterSettings::default(), Some(below), run, sink)
 }
 
 /// The work of a band: which boxes to go through with which filters.
@@ -168,6 +208,8 @@ fn bounding_boxes([lo, hi]: [Ijk; 2], side: BoxSide) -> Vec<Block> {
 pub(super) struct Worker<'a> {
     pub(super) filter: Filter<'a>,
     pub(super) settings: BandSettings,
+    /// Where the mesh is open, what is wanted.
+    pub(super) below: Option<Below<'a>>,
 }
 
 impl Worker<'_> {
@@ -201,7 +243,7 @@ impl Worker<'_> {
         let mut kept: Vec<(Ijk, u32, f64)> = Vec::new();
         match self.filter.bounding_box(block, &mut statistics) {
             Verdict::Outside => {}
-            Verdict::Inside => batch.inside_blocks.push((block.origin, block.side)),
+            Verdict::Inside => self.push_inside(block, &mut batch),
             Verdict::Kept { triangle, .. } if self.filter.settings.octree == Switch::Off => {
                 for origin in block.leaves().filter(|&o| self.settings.slab.computes(o, LEAF_DIM)) {
                     let mut of_leaf = FilterStatistics::default();
@@ -219,7 +261,7 @@ impl Worker<'_> {
                 self.filter.octree(block, triangle, LEAF_DIM, &mut statistics, &mut |block, verdict| {
                     match verdict {
                         Verdict::Outside => {}
-                        Verdict::Inside => batch.inside_blocks.push((block.origin, block.side)),
+                        Verdict::Inside => self.push_inside(block, &mut batch),
                         Verdict::Kept { triangle, distance } => {
                             kept.push((block.origin, triangle, distance));
                         }
@@ -239,6 +281,13 @@ impl Worker<'_> {
             }
         }
         (batch, statistics)
+    }
+
+    /// Adds a block on the negative side, beyond the band. Where the mesh is open, that says nothing.
+    fn push_inside(&self, block: Block, batch: &mut LeafBatch) {
+        if self.below.is_none() {
+            batch.inside_blocks.push((block.origin, block.side));
+        }
     }
 
     /// The sign of the distance in all of a block whose centre has the signed distance `centre`, where that is farther

@@ -1,7 +1,7 @@
 //! A leaf by candidate lists: one walk of the hierarchy for all of it.
 
 use super::LeafBatch;
-use super::build::Worker;
+use super::build::{Below, Worker};
 use super::leaf::{Fate, Leaf};
 use crate::candidates::{BlockLists, EightPoints, Narrowing};
 use crate::filter::{Block, FilterStatistics};
@@ -36,11 +36,28 @@ impl Worker<'_> {
         let q = ssvh.triangle(triangle).closest(block.centre(self.filter.lattice)).point;
         narrowing.start(ssvh, self.filter.lattice, block, q);
         statistics.lists[0] += narrowing.count(0) as u64;
+        if let Some(below) = &self.below {
+            let centre = [0.0; 3];
+            if self.is_above(below, 0, centre, block, narrowing) {
+                return;
+            }
+            if self.is_inside(below, 0, centre, block, distance.abs(), narrowing) {
+                batch.inside_blocks.push((origin, LEAF_DIM));
+                return;
+            }
+        }
         batch.lists.begin_leaf();
         let mut work = Work { narrowing, lists: &mut batch.lists, statistics, leaf: Leaf::new() };
-        self.halves(0, block, self.side_around(block, distance), &mut work);
+        // Without signs, all distances are on one side.
+        let side = if self.below.is_some() { Some(1.0) } else { self.side_around(block, distance) };
+        self.halves(0, block, side, &mut work);
         let leaf = work.leaf;
-        if leaf.finish(origin, batch) == Fate::Dropped {
+        let fate = if self.below.is_some() {
+            leaf.finish_unsigned(origin, batch)
+        } else {
+            leaf.finish(origin, batch)
+        };
+        if fate == Fate::Dropped {
             batch.lists.drop_leaf();
         }
     }
@@ -84,16 +101,60 @@ impl Worker<'_> {
             let side = side.or_else(|| self.side_around(half, signed));
             work.narrowing.narrow(depth, n, half.side);
             work.statistics.lists[depth + 1] += work.narrowing.count(depth + 1) as u64;
+            if let Some(below) = &self.below {
+                let centre = centres.map(|c| c[n]);
+                if self.is_above(below, depth + 1, centre, half, work.narrowing) {
+                    continue;
+                }
+                // The distance but for its error: the band's ends need not be that exact.
+                if self.is_inside(below, depth + 1, centre, half, distance + error, work.narrowing)
+                    && self.is_inside(below, depth + 1, centre, half, distance - error, work.narrowing)
+                {
+                    work.leaf.fill(half, -self.settings.background());
+                    continue;
+                }
+            }
             if half.side > 2 {
                 self.halves(depth + 1, half, side, work);
                 continue;
             }
+            let valid = self.nodes_by_list(n, &centres, half, side, work);
             // An edge that the surface crosses has valid ends; other blocks need no list.
-            if self.nodes_by_list(n, &centres, half, side, work) > 0 {
+            if valid > 0 || self.below.is_some() {
                 let (positions, bounds) = work.narrowing.bounded();
                 work.lists.push(half.origin, positions, bounds);
             }
         }
+    }
+
+    /// Whether all nodes of a block are too far over the mesh to matter. The list of `depth` is the block's, and `centre` its centre
+    /// relative to the leaf's, in voxels.
+    fn is_above(
+        &self,
+        below: &Below<'_>,
+        depth: usize,
+        centre: [f32; 3],
+        block: Block,
+        narrowing: &Narrowing,
+    ) -> bool {
+        narrowing.is_above(depth, centre, block.side, (below.above / self.filter.lattice.voxel) as f32)
+    }
+
+    /// Whether all nodes of a block with the given distance at its centre are known to be inside.
+    fn is_inside(
+        &self,
+        below: &Below<'_>,
+        depth: usize,
+        centre: [f32; 3],
+        block: Block,
+        distance: f64,
+        narrowing: &Narrowing,
+    ) -> bool {
+        let radius = block.radius(self.filter.lattice);
+        let is_there = distance - radius > below.inside[0] && distance + radius < below.inside[1];
+        let ssvh = self.filter.distance.ssvh();
+        let at_boundary = |position: u32| below.at_boundary[ssvh.id_at(position) as usize];
+        is_there && narrowing.is_below(depth, centre, block.side, at_boundary)
     }
 
     /// Evaluates the eight nodes of a block of side 2, which was narrowed to last as half number `n` with one of `centres`,

@@ -66,6 +66,19 @@ impl Leaf {
         }
         Fate::Dropped
     }
+
+    /// The same without values. Nodes with negative ones are those that are known to be inside.
+    pub(super) fn finish_unsigned(&self, origin: Ijk, batch: &mut LeafBatch) -> Fate {
+        let inside = inside_mask(&self.values);
+        if self.active == [0; 8] && inside == [0; 8] {
+            return Fate::Dropped;
+        }
+        batch.origins.push(origin);
+        batch.active.push(self.active);
+        batch.inside.push(inside);
+        batch.closest.extend_from_slice(&self.closest);
+        Fate::Kept
+    }
 }
 
 /// phi as an f32 that keeps its sign and stays below the background; zero becomes the smallest positive

@@ -49,6 +49,15 @@ impl FlatTriangle {
         self.corners.as_flattened().iter().fold(0.0, |size, x| size.max(x.abs()))
     }
 
+    /// Between which heights over the triangle's plane the box around `centre` with half-sides `half` is, but for rounding. Zero
+    /// is among them for a needle.
+    pub fn heights(&self, centre: [f32; 3], half: f32) -> [f32; 2] {
+        let sum = |f: &dyn Fn(usize) -> f32| f(0) + f(1) + f(2);
+        let middle = sum(&|i| self.normal[i] * (centre[i] - self.corners[0][i]));
+        let radius = half * sum(&|i| self.normal[i].abs());
+        [middle - radius, middle + radius]
+    }
+
     /// The distances of the points in `p`, and the unit vectors to them from their closest points. All regions are
     /// computed and the right one is selected, so that the lanes run side by side.
     #[inline(always)]

@@ -107,6 +107,30 @@ impl Narrowing {
         in_lanes(Narrow { parent, n, corners: &corners, slack: self.slack, child });
     }
 
+    /// Whether all nodes of a block of `side` nodes along an axis, whose centre is given relative to the leaf's in voxels, are
+    /// more than `above` voxels over the planes of all triangles in the list of `depth`.
+    pub fn is_above(&self, depth: usize, centre: [f32; 3], side: i32, above: f32) -> bool {
+        let half = 0.5 * (side - 1) as f32;
+        let least = above + self.slack;
+        let list = &self.levels[depth].list;
+        list.iter().all(|&n| self.flats[n as usize].heights(centre, half)[0] > least)
+    }
+
+    /// Whether all of them are under the planes of all triangles in that list, none of which is excepted, by its position.
+    pub fn is_below(
+        &self,
+        depth: usize,
+        centre: [f32; 3],
+        side: i32,
+        is_excepted: impl Fn(u32) -> bool,
+    ) -> bool {
+        let half = 0.5 * (side - 1) as f32;
+        self.levels[depth].list.iter().all(|&n| {
+            let n = n as usize;
+            self.flats[n].heights(centre, half)[1] < -self.slack && !is_excepted(self.positions[n])
+        })
+    }
+
     /// The number of triangles in the list of `depth`.
     pub fn count(&self, depth: usize) -> usize {
         self.levels[depth].list.len()

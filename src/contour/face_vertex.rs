@@ -132,6 +132,10 @@ fn in_leaf(cells: &Cells<'_>, vertices: &[[f64; 3]], leaf: LeafId, marks: &mut [
                     vertices[cells.vertex(cell, edge) as usize],
                     vertices[cells.vertex(next, next_edge) as usize],
                 ];
+                // Cells without all of their crossings have no vertices, and no triangles.
+                if ends.as_flattened().iter().any(|x| x.is_nan()) {
+                    continue;
+                }
                 let ijk = signs.origin(leaf) + local;
                 if !passes_corner(&cells.grid, ijk, axis, corner, ends) {
                     marks.pairs |= 1 << (2 * axis as usize + n);

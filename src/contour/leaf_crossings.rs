@@ -57,6 +57,12 @@ impl<'a> LeafCrossings<'a> {
         around
     }
 
+    /// Whether all of these edges of the cell at `local` have a crossing.
+    #[inline]
+    pub fn has_all(&self, local: [i32; 3], mut edges: impl Iterator<Item = Edge>) -> bool {
+        edges.all(|edge| self.numbers[place(local) + OF_CELL[edge.index()]] != u32::MAX)
+    }
+
     /// The crossing of an edge of the cell at `local`, 0 to 7 each. The edge must be crossed.
     #[inline]
     pub fn of_cell(&self, local: [i32; 3], edge: Edge) -> &'a Crossing {

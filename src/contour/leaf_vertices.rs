@@ -69,6 +69,12 @@ impl LeafVertices {
             let id = constant_case(table, corners.mask(number));
             *cell = CellCase { first_vertex: first_vertex + first as u32, case: id };
             let case = table.case(id);
+            if cells.crossings.numbers.is_open() && !placer.has_all_crossings(case, number) {
+                let vertices = &mut placer.vertices[first..first + case.sheets().len()];
+                vertices.fill([f64::NAN; 3]);
+                first += case.sheets().len();
+                continue;
+            }
             placer.add(Waiting { case, local: Ijk::in_leaf(Ijk::default(), number), first });
             first += case.sheets().len();
         }
@@ -78,6 +84,12 @@ impl LeafVertices {
 }
 
 impl Placer<'_> {
+    /// Whether no crossing of a cell is missing.
+    fn has_all_crossings(&self, case: &Case, number: usize) -> bool {
+        let local = Ijk::in_leaf(Ijk::default(), number);
+        case.sheets().iter().all(|sheet| self.crossings.has_all(local.0, sheet.edges.iter()))
+    }
+
     /// Takes the next cell.
     #[inline]
     fn add(&mut self, cell: Waiting) {

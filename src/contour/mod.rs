@@ -255,7 +255,8 @@ pub fn halo(settings: &ContourSettings) -> i32 {
 }
 
 /// The same as [`contour`] without a surface to ask, and with the number of triangles around each crossed edge, in the
-/// order of the edges' numbers, which is that of the triangles.
+/// order of the edges' numbers, which is that of the triangles. Where crossings are missing, so are the triangles of all edges
+/// of a cell with such an edge; vertices that no triangle has are left out.
 ///
 /// # Errors
 /// As [`contour`].
@@ -280,7 +281,11 @@ pub(crate) fn contour_by_edge(
         vertices.append(&mut faces.positions);
         let Triangulation { mesh, sizes, .. } =
             output::triangulate(&cells, &faces, vertices, CutMethod::default(), &phase)?;
-        Ok((mesh.into_ordered().mesh, sizes))
+        let mut mesh = mesh.into_ordered().mesh;
+        if crossings.numbers.is_open() {
+            mesh.drop_idle_vertices(0);
+        }
+        Ok((mesh, sizes))
     })
 }
 

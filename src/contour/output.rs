@@ -135,12 +135,17 @@ fn in_leaf(
     let mut triangles = Vec::new();
     let mut sizes = sizes.iter_mut();
     let grid = &cells.grid;
+    let is_open = cells.crossings.numbers.is_open();
     for_polygons(
         cells,
         faces,
         vertices,
         leaf,
         |EdgePolygon { polygon, envelope, fit, piece, node, number, along }| {
+            let size = sizes.next();
+            if is_open && polygon.corners().iter().any(|corner| corner.position[0].is_nan()) {
+                return;
+            }
             triangles.clear();
             let cut = polygonize(&polygon, &envelope, &fit, method, &mut triangles);
             let hub = || grid.between_walls(node, on_axis(along.0, grid.clamp(along.1)));
@@ -167,7 +172,7 @@ fn in_leaf(
                 output.edge_vertices.push(hub());
             }
             slots.extend(&triangles, number + AXIS * along.0 as u16);
-            if let Some(size) = sizes.next() {
+            if let Some(size) = size {
                 *size = triangles.len() as u8;
             }
             output.quads += 1;

@@ -17,6 +17,7 @@ pub struct EdgeId(pub u32);
 pub struct EdgeNumbers {
     leaves: Vec<LeafEdges>,
     count: u32,
+    is_open: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -40,11 +41,24 @@ impl EdgeNumbers {
     /// When there are more than 2^32 - 1 of them.
     pub fn new(signs: &SignField) -> Result<Self, TooManyEdges> {
         let ids: Vec<LeafId> = signs.leaves().collect();
-        let mut leaves: Vec<LeafEdges> = ids
+        let masks = ids.into_par_iter().with_min_len(64);
+        let masks = masks.map(|leaf| Axis::ALL.map(|axis| signs.crossed_edges(leaf, axis)));
+        Self::of_masks(masks.collect(), false)
+    }
+
+    /// Numbers some of the sign changes: of each leaf, the edges of these masks, by axis.
+    ///
+    /// # Errors
+    /// When there are more than 2^32 - 1 of them.
+    pub fn of_some(masks: Vec<[LeafMask; 3]>) -> Result<Self, TooManyEdges> {
+        Self::of_masks(masks, true)
+    }
+
+    fn of_masks(masks: Vec<[LeafMask; 3]>, is_open: bool) -> Result<Self, TooManyEdges> {
+        let mut leaves: Vec<LeafEdges> = masks
             .into_par_iter()
             .with_min_len(64)
-            .map(|leaf| {
-                let masks = Axis::ALL.map(|axis| signs.crossed_edges(leaf, axis));
+            .map(|masks| {
                 let mut before = [[0; 8]; 3];
                 let mut in_leaf = 0;
                 for (mask, before) in masks.iter().zip(&mut before) {
@@ -64,7 +78,12 @@ impl EdgeNumbers {
             count = next;
         }
         let count = u32::try_from(count).map_err(|_| TooManyEdges)?;
-        Ok(EdgeNumbers { leaves, count })
+        Ok(EdgeNumbers { leaves, count, is_open })
+    }
+
+    /// Whether edges that change sign may have no number.
+    pub fn is_open(&self) -> bool {
+        self.is_open
     }
 
     /// The number of intersected edges.

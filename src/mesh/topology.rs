@@ -43,8 +43,8 @@ impl Defects {
 impl Topology {
     /// The topology of `mesh`.
     pub fn new(mesh: &TriMesh) -> Self {
-        let (vertex_start, vertex_corners) = corners_by_vertex(mesh);
-        let half_edges = half_edges_by_lower_vertex(mesh);
+        let ((vertex_start, vertex_corners), half_edges) =
+            rayon::join(|| corners_by_vertex(mesh), || half_edges_by_lower_vertex(mesh));
         let mut next_around_edge: Vec<u32> = (0..3 * mesh.triangles.len() as u32).collect();
         let mut defects = Defects::default();
         for group in half_edges.chunk_by(|a, b| a.ends == b.ends) {

@@ -19,6 +19,23 @@ impl TriMesh {
         self.triangles[t].map(|v| self.vertices[v as usize])
     }
 
+    /// Drops vertices from number `first` on that no triangle has.
+    pub(crate) fn drop_idle_vertices(&mut self, first: usize) {
+        let mut used = vec![false; self.vertices.len()];
+        self.triangles.as_flattened().iter().for_each(|&v| used[v as usize] = true);
+        let mut numbers: Vec<u32> = (0..self.vertices.len() as u32).collect();
+        let mut next = first;
+        for v in first..self.vertices.len() {
+            numbers[v] = next as u32;
+            if used[v] {
+                self.vertices[next] = self.vertices[v];
+                next += 1;
+            }
+        }
+        self.vertices.truncate(next);
+        self.triangles.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
+    }
+
     /// The smallest and largest coordinates of all vertices; `None` without vertices.
     pub fn bounding_box(&self) -> Option<[[f64; 3]; 2]> {
         let first = *self.vertices.first()?;

@@ -87,6 +87,11 @@ impl Boundary {
         self.loops.is_empty()
     }
 
+    /// Per triangle of `mesh` whether a vertex of it is on the boundary.
+    pub fn triangles(&self, mesh: &TriMesh) -> Vec<bool> {
+        mesh.triangles.iter().map(|t| t.iter().any(|&v| self.on_boundary[v as usize])).collect()
+    }
+
     /// Whether a feature of a triangle of `mesh` is on the boundary.
     #[inline]
     pub fn holds(&self, mesh: &TriMesh, triangle: u32, feature: Feature) -> bool {

@@ -6,6 +6,7 @@ use crate::geom::triangle_pair::meeting_point;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};
 use crate::verify::boxes::BoxTree;
+use glam::DVec3;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -21,6 +22,10 @@ pub(super) fn check_patch(patch: &TriMesh, run: &RunSettings) -> Result<Result<(
     Ok(found.map_or(Ok(()), |(triangles, at)| Err(PatchError::Intersects { triangles, at })))
 }
 
+/// Where one in this many triangles is the patch's, or fewer, each of them is looked up; otherwise all pairs are gone through, which
+/// takes a few times as long as looking up one in eight.
+const FEW: usize = 8;
+
 /// The triangles from number `patch` on that meet one of those before, ascending, each with a point of both.
 pub(super) fn meeting_patch(
     mesh: &TriMesh,
@@ -28,15 +33,32 @@ pub(super) fn meeting_patch(
     patch: u32,
     run: &RunSettings,
 ) -> Result<BTreeMap<u32, [f64; 3]>, Cancelled> {
-    let found = tree.pairs(run, Vec::new, |found: &mut Vec<(u32, [f64; 3])>, a, b| {
-        if (a < patch) == (b < patch) {
-            return;
-        }
+    let test = |found: &mut Vec<(u32, [f64; 3])>, a: u32, b: u32| {
         let (va, vb) = (mesh.triangles[a as usize], mesh.triangles[b as usize]);
         if let Some(at) = meeting_point(va, mesh.corners(a as usize), vb, mesh.corners(b as usize)) {
-            found.push((a.max(b), at));
+            found.push((b, at));
         }
-    })?;
+    };
+    let found = if (patch as usize) < tree.order().len() / FEW {
+        let of_patch = |a: u32| {
+            run.check()?;
+            let [p, q, r] = mesh.corners(a as usize).map(DVec3::from);
+            let mut found = Vec::new();
+            tree.meeting([p.min(q).min(r), p.max(q).max(r)], |b| {
+                if b >= patch {
+                    test(&mut found, a, b);
+                }
+            });
+            Ok(found)
+        };
+        (0..patch).into_par_iter().with_min_len(64).map(of_patch).collect::<Result<_, Cancelled>>()?
+    } else {
+        tree.pairs(run, Vec::new, |found, a, b| {
+            if a < patch && b >= patch {
+                test(found, a, b);
+            }
+        })?
+    };
     let mut all: Vec<_> = found.into_iter().flatten().collect();
     // The order of tasks is not that of the triangles.
     all.sort_by(|a, b| b.partial_cmp(a).unwrap_or(Ordering::Equal));

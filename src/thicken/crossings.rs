@@ -1,9 +1,11 @@
 //! Where lattice edges leave the solid, through which of its faces, and the normal there.
 
+use super::near_nodes::near_nodes;
 use super::solid::{Place, Solid};
-use crate::band::{LeafId, SignField};
+use crate::band::{LeafId, LeafMask, SignField};
+use crate::candidates::{Candidates, block_in_leaf};
 use crate::distance::Sample;
-use crate::edge::{Crossing, Crossings, EdgeNumbers, NodeTriangles};
+use crate::edge::{Crossing, Crossings, EdgeNumbers, NodeTriangles, bits};
 use crate::error::Error;
 use crate::lattice::{Axis, Ijk, Lattice};
 use crate::run::{Cancelled, Phase, RunSettings};
@@ -37,13 +39,21 @@ pub(super) struct SolidCrossings {
 /// Bisection ends at this length, in voxels: far below what the placement of a vertex shows, far above rounding.
 const SHORTEST: f64 = 1e-6;
 
-/// Distances this near to the lid or the shell, in voxels, are on it.
-const ON_FACE: f64 = 1e-6;
+/// Distances this near to the lid or the shell, in voxels, are on it: far below what the placement of a vertex shows.
+const ON_FACE: f64 = 1e-5;
 
-/// Secant steps before bisection alone goes on. Two suffice where one triangle is the closest along the edge.
-const SECANTS: usize = 6;
+/// Steps along the distance before bisection alone goes on. One suffices where one triangle is the closest along the edge.
+const STEPS: usize = 12;
 
-/// Finds the crossings of all edges that change sign.
+/// How far beside the plane of a wall, in voxels, the two points are that are asked to see whether the edge leaves the solid
+/// there: together less than [`SHORTEST`].
+const BESIDE: f64 = 0.3 * SHORTEST;
+
+/// Edges that are followed together.
+const TOGETHER: usize = 8;
+
+/// Finds the crossings of edges that change sign: all but those of the lid that are more than some voxels from anything else,
+/// since nothing of the lid gets into the result.
 pub(super) fn crossings(
     solid: &Solid<'_>,
     lattice: Lattice,
@@ -51,14 +61,25 @@ pub(super) fn crossings(
     nodes: &NodeTriangles,
     run: &RunSettings,
 ) -> Result<SolidCrossings, Error> {
-    let numbers = run.install(|| EdgeNumbers::new(signs))?;
-    let leaves: Vec<LeafId> = signs.leaves().filter(|&leaf| !numbers.range(leaf).is_empty()).collect();
+    let leaves: Vec<LeafId> = signs.leaves().collect();
+    let of_leaf = |&leaf: &LeafId| LeafNodes { solid, lattice, signs, nodes, leaf };
+    let numbers = run.install(|| {
+        let other = leaves.par_iter().with_min_len(16).map(|leaf| of_leaf(leaf).beyond_lid()).collect();
+        let near = near_nodes(signs, other);
+        let masks = leaves.par_iter().zip(near).with_min_len(64).map(|(&leaf, near)| {
+            Axis::ALL.map(|axis| {
+                let crossed = signs.crossed_edges(leaf, axis);
+                std::array::from_fn(|x| crossed[x] & near[x])
+            })
+        });
+        EdgeNumbers::of_some(masks.collect())
+    })?;
+    let leaves: Vec<LeafId> = leaves.into_iter().filter(|&leaf| !numbers.range(leaf).is_empty()).collect();
     let phase = run.phase(Phase::Edges, leaves.len() as u64);
     let found: Vec<Vec<(Crossing, Part, DVec3)>> = run.install(|| {
-        let in_leaf = |&leaf: &LeafId| {
+        let in_leaf = |leaf: &LeafId| {
             phase.advance(1)?;
-            let leaf_nodes = LeafNodes { solid, lattice, signs, nodes, leaf };
-            Ok(numbers.in_leaf(leaf).map(|(axis, number)| leaf_nodes.cross(axis, number)).collect())
+            Ok(of_leaf(leaf).cross_all(&numbers))
         };
         leaves.par_iter().with_min_len(4).map(in_leaf).collect::<Result<_, Cancelled>>()
     })?;
@@ -89,20 +110,98 @@ struct End {
     sample: Sample,
 }
 
-impl LeafNodes<'_> {
-    fn cross(&self, axis: Axis, number: usize) -> (Crossing, Part, DVec3) {
+impl<'a> LeafNodes<'a> {
+    /// The lower nodes of the edges that change sign elsewhere than at the lid, as far as the ends say so.
+    fn beyond_lid(&self) -> LeafMask {
+        let mut other = [0; 8];
+        for axis in Axis::ALL {
+            for number in bits(&self.signs.crossed_edges(self.leaf, axis)) {
+                other[number >> 6] |= u64::from(!self.search(axis, number).is_at_lid()) << (number & 63);
+            }
+        }
+        other
+    }
+
+    /// The crossings of all edges that start in the leaf and have a number, in the order of the numbers.
+    fn cross_all(&self, numbers: &EdgeNumbers) -> Vec<(Crossing, Part, DVec3)> {
+        let unknown = (Crossing { t: 0.0, normal: [0.0; 3], triangle: 0 }, Part::default(), DVec3::ZERO);
+        let mut all = vec![unknown; numbers.range(self.leaf).len()];
         let origin = self.signs.origin(self.leaf);
-        let (local, next) = {
-            let local = Ijk::in_leaf(Ijk::default(), number);
-            (local, local.next(axis))
-        };
+        // By block of 2^3 nodes, which have the same list.
+        let mut order: Vec<(u32, usize, Axis, usize)> = (0..)
+            .zip(numbers.in_leaf(self.leaf))
+            .map(|(n, (axis, number))| (block_in_leaf(Ijk::in_leaf(origin, number)), n, axis, number))
+            .collect();
+        order.sort_unstable_by_key(|&(block, n, ..)| (block, n));
+        for block in order.chunk_by(|a, b| a.0 == b.0) {
+            let lists = self.solid.lists;
+            let near = lists.and_then(|lists| lists.of_cell(Ijk::in_leaf(origin, block[0].3)));
+            for edges in block.chunks(TOGETHER) {
+                let mut searches: Vec<(usize, Search<'a>)> =
+                    edges.iter().map(|&(_, n, axis, number)| (n, self.search(axis, number))).collect();
+                self.follow(&mut searches, near.as_ref(), |n, found| all[n] = found);
+            }
+        }
+        all
+    }
+
+    /// Follows edges until all have been found.
+    fn follow(
+        &self,
+        searches: &mut Vec<(usize, Search<'a>)>,
+        near: Option<&Candidates<'_>>,
+        mut found: impl FnMut(usize, (Crossing, Part, DVec3)),
+    ) {
+        let distance = self.solid.distance;
+        let mut asked = [(0.0, DVec3::ZERO); TOGETHER];
+        while !searches.is_empty() {
+            let mut count = 0;
+            // None is farther from S than from what is closest to its ends.
+            let mut most: f64 = 0.0;
+            searches.retain_mut(|(n, search)| match search.ask() {
+                Next::Found(crossing, part) => {
+                    found(*n, (crossing, part, search.edge.at(crossing.t)));
+                    false
+                }
+                Next::At(t) => {
+                    let p = search.edge.at(t);
+                    most = most.max(p.distance_squared(search.inside.sample.closest));
+                    asked[count] = (t, p);
+                    count += 1;
+                    true
+                }
+            });
+            if count == 0 {
+                break;
+            }
+            let mut points = [asked[0].1; TOGETHER];
+            for (point, (_, p)) in points.iter_mut().zip(&asked[..count]) {
+                *point = *p;
+            }
+            // But for rounding.
+            let expected = most.sqrt() * (1.0 + 1e-12);
+            let hits = near.map(|near| near.closest_to_eight(distance.ssvh(), &points, count, expected));
+            for (k, (_, search)) in searches.iter_mut().enumerate() {
+                let (t, p) = asked[k];
+                let sample = match &hits {
+                    Some(hits) => distance.from_triangle(p, hits[k].triangle),
+                    None => distance.at(p, search.inside.sample.triangle),
+                };
+                search.tell(End { t, sample });
+            }
+        }
+    }
+
+    fn search(&self, axis: Axis, number: usize) -> Search<'a> {
+        let origin = self.signs.origin(self.leaf);
+        let local = Ijk::in_leaf(Ijk::default(), number);
         let start = DVec3::from(self.lattice.world_from_index(origin + local));
         let edge = Edge { solid: self.solid, start, axis, voxel: self.lattice.voxel };
         let low = End { t: 0.0, sample: self.node(local, edge.at(0.0)) };
-        let high = End { t: 1.0, sample: self.node(next, edge.at(1.0)) };
+        let high = End { t: 1.0, sample: self.node(local.next(axis), edge.at(1.0)) };
         let low_is_inside = self.signs.inside(self.leaf)[number >> 6] >> (number & 63) & 1 == 1;
-        let (crossing, part) = if low_is_inside { edge.cross(low, high) } else { edge.cross(high, low) };
-        (crossing, part, edge.at(crossing.t))
+        let (inside, outside) = if low_is_inside { (low, high) } else { (high, low) };
+        Search { edge, inside, outside, step: 0, depth: None, part: Part::default(), found: None, last: None }
     }
 
     fn node(&self, local: Ijk, p: DVec3) -> Sample {
@@ -124,6 +223,106 @@ struct Edge<'a> {
     voxel: f64,
 }
 
+/// The way to the crossing between an end inside and one outside.
+struct Search<'a> {
+    edge: Edge<'a>,
+    inside: End,
+    outside: End,
+    step: usize,
+    /// The signed distance of the face that is looked for, where it is the lid or the shell, and which of them.
+    depth: Option<f64>,
+    part: Part,
+    found: Option<(Crossing, Part)>,
+    /// What was told last.
+    last: Option<End>,
+}
+
+/// What a search needs next.
+enum Next {
+    /// The closest point to this place on the edge.
+    At(f64),
+    Found(Crossing, Part),
+}
+
+impl Search<'_> {
+    /// Whether the ends say that this edge crosses the lid: the outer one is above it, and between them neither the distance
+    /// nor the closest point jumps.
+    fn is_at_lid(&self) -> bool {
+        let Search { edge, inside, outside, .. } = self;
+        let place = edge.solid.place(edge.at(outside.t), &outside.sample);
+        let holds = |end: &End| {
+            let Sample { triangle, feature, .. } = end.sample;
+            edge.solid.boundary.holds(edge.solid.distance.mesh(), triangle, feature)
+        };
+        let most = edge.voxel * (1.0 + 1e-9);
+        place == Place::Above
+            && (inside.sample.distance - outside.sample.distance).abs() <= most
+            && inside.sample.closest.distance(outside.sample.closest) <= most
+            && !holds(inside)
+            && !holds(outside)
+    }
+
+    /// The place to look at next, or what was found.
+    fn ask(&mut self) -> Next {
+        if let Some((crossing, part)) = self.found {
+            return Next::Found(crossing, part);
+        }
+        let Search { edge, inside, outside, step, .. } = self;
+        let (solid, step) = (edge.solid, *step);
+        let place = solid.place(edge.at(outside.t), &outside.sample);
+        self.part = if place == Place::Above { Part::Lid } else { Part::Shell };
+        self.depth = match place {
+            Place::Above => Some(-solid.lid),
+            Place::Below => Some(-solid.thickness_at(&outside.sample)),
+            Place::Beside | Place::Inside => None,
+        };
+        if let Some(depth) = self.depth
+            && (outside.sample.distance - depth).abs() <= ON_FACE * edge.voxel
+        {
+            return Next::Found(edge.on_face(*outside, self.part), self.part);
+        }
+        let width = outside.t - inside.t;
+        if width.abs() <= SHORTEST {
+            let (crossing, part) = edge.at_jump(*inside, *outside);
+            return Next::Found(crossing, part);
+        }
+        let share = match self.depth {
+            // Some steps halve, so that a jump of the distance does not take for ever.
+            Some(depth) if step < STEPS && step % 4 != 3 => {
+                let (a, b) = (inside.sample.distance - depth, outside.sample.distance - depth);
+                // A little beyond the root, so that it is the outside end that gets near.
+                let secant = (a / (a - b) + 1e-9).clamp(0.0, 1.0);
+                let newton = self.last.and_then(|last| edge.tangent(&last, depth));
+                let share = newton.map(|t| (t - inside.t) / width);
+                share.filter(|&share| share > 0.0 && share < 1.0).unwrap_or(secant)
+            }
+            None if place == Place::Beside && step < STEPS => {
+                edge.at_wall(inside, outside, step % 2 == 0).unwrap_or(0.5)
+            }
+            _ => 0.5,
+        };
+        Next::At(inside.t + share * width)
+    }
+
+    /// Takes what was asked for.
+    fn tell(&mut self, middle: End) {
+        let Search { edge, inside, outside, .. } = self;
+        self.step += 1;
+        self.last = Some(middle);
+        if edge.solid.place(edge.at(middle.t), &middle.sample) != Place::Inside {
+            *outside = middle;
+            return;
+        }
+        // As good as on the face, from the inside.
+        if let Some(depth) = self.depth
+            && (middle.sample.distance - depth).abs() <= ON_FACE * edge.voxel
+        {
+            self.found = Some((edge.on_face(middle, self.part), self.part));
+        }
+        *inside = middle;
+    }
+}
+
 impl Edge<'_> {
     fn at(&self, t: f64) -> DVec3 {
         let mut p = self.start;
@@ -131,54 +330,28 @@ impl Edge<'_> {
         p
     }
 
-    fn end(&self, t: f64, hint: u32) -> End {
-        End { t, sample: self.solid.sample(self.at(t), hint) }
+    /// Where the distance would be `depth` if it went on as it does at `end`.
+    fn tangent(&self, end: &End, depth: f64) -> Option<f64> {
+        let Sample { distance, closest, .. } = end.sample;
+        let slope = (self.at(end.t) - closest)[self.axis as usize] / distance;
+        let t = end.t + (depth - distance) / (slope * self.voxel);
+        t.is_finite().then_some(t)
     }
 
-    /// The crossing between an end inside and one outside.
-    fn cross(&self, mut inside: End, mut outside: End) -> (Crossing, Part) {
-        let solid = self.solid;
-        let near = ON_FACE * self.voxel;
-        for step in 0.. {
-            let place = solid.place(self.at(outside.t), &outside.sample);
-            let part = if place == Place::Above { Part::Lid } else { Part::Shell };
-            let depth = match place {
-                Place::Above => Some(-solid.lid),
-                Place::Below => Some(-solid.thickness_at(&outside.sample)),
-                Place::Beside | Place::Inside => None,
-            };
-            if let Some(depth) = depth
-                && (outside.sample.distance - depth).abs() <= near
-            {
-                return (self.on_face(outside, part), part);
-            }
-            let width = outside.t - inside.t;
-            if width.abs() <= SHORTEST {
-                return self.at_jump(inside, outside);
-            }
-            let share = match depth {
-                // Every other step halves, so that a jump of the distance does not take for ever.
-                Some(depth) if step < 2 * SECANTS && step % 2 == 0 => {
-                    let (a, b) = (inside.sample.distance - depth, outside.sample.distance - depth);
-                    // A little beyond the root, so that it is the outside end that gets near.
-                    (a / (a - b) + 1e-9).clamp(0.0, 1.0)
-                }
-                _ => 0.5,
-            };
-            let middle = self.end(inside.t + share * width, inside.sample.triangle);
-            if solid.place(self.at(middle.t), &middle.sample) == Place::Inside {
-                // As good as on the face, from the inside.
-                if let Some(depth) = depth
-                    && (middle.sample.distance - depth).abs() <= near
-                {
-                    return (self.on_face(middle, part), part);
-                }
-                inside = middle;
-            } else {
-                outside = middle;
-            }
+    /// The part of the way from the inner end to the outer one at which to look for the wall that the outer one is beyond: a
+    /// little beyond the wall's plane, then a little before it. `None` where that leads nowhere, or only the second was
+    /// wanted and the first has not been looked at.
+    fn at_wall(&self, inside: &End, outside: &End, is_first: bool) -> Option<f64> {
+        let wall = self.solid.boundary.wall(self.solid.distance.mesh(), &outside.sample);
+        let across = (self.at(outside.t) - outside.sample.closest).dot(wall) / self.voxel;
+        let crossed = outside.t - across / wall[self.axis as usize];
+        let width = outside.t - inside.t;
+        let is_next = (outside.t - crossed).abs() < 2.0 * BESIDE;
+        if !is_first && !is_next {
+            return None;
         }
-        unreachable!("halving ends")
+        let share = (crossed - inside.t + width.signum() * if is_next { -BESIDE } else { BESIDE }) / width;
+        (share > 0.0 && share < 1.0).then_some(share)
     }
 
     fn crossing(&self, end: &End, normal: DVec3) -> Crossing {

@@ -15,8 +15,10 @@ use rayon::prelude::*;
 #[derive(Debug)]
 pub(super) struct Embedding<'a> {
     mesh: &'a mut TriMesh,
-    /// Around the triangles as they were at first.
+    /// Around the triangles as they were at first, and as they are.
     tree: BoxTree,
+    /// The position of each triangle in the tree.
+    positions: Vec<u32>,
     /// No vertex gets farther than this from where it was at first, along each axis; in model units.
     reach: f64,
 }
@@ -25,7 +27,9 @@ impl<'a> Embedding<'a> {
     /// `mesh` must be free of intersections.
     pub fn new(mesh: &'a mut TriMesh, reach: f64) -> Embedding<'a> {
         let tree = BoxTree::new(mesh, (0..mesh.triangles.len() as u32).into_par_iter());
-        Embedding { mesh, tree, reach }
+        let mut positions = vec![0; mesh.triangles.len()];
+        (0..).zip(tree.order()).for_each(|(position, &t)| positions[t as usize] = position);
+        Embedding { mesh, tree, positions, reach }
     }
 
     /// Where a vertex is.
@@ -55,7 +59,11 @@ impl<'a> Embedding<'a> {
         self.mesh.vertices[vertex as usize] = to.to_array();
         let keeps_side = star.iter().zip(before).all(|(&t, before)| self.area(t).dot(before) > 0.0);
         let fits = keeps_side && self.is_free(star);
-        if !fits {
+        if fits {
+            for &t in star {
+                self.tree.grow(self.positions[t as usize] as usize, self.bounds(t));
+            }
+        } else {
             self.mesh.vertices[vertex as usize] = from;
         }
         fits
@@ -80,9 +88,7 @@ impl<'a> Embedding<'a> {
         let Some([lo, hi]) = all else { return true };
         let meets_box = |a: &[DVec3; 2], b: &[DVec3; 2]| a[0].cmple(b[1]).all() && b[0].cmple(a[1]).all();
         let mut found = false;
-        // Half the longest side, a little for rounding, and how far others are from their boxes.
-        let margin = 0.500_001 * (hi - lo).max_element() + self.reach;
-        self.tree.near(lo.midpoint(hi), margin, |other| {
+        self.tree.meeting([lo, hi], |other| {
             if found {
                 return;
             }

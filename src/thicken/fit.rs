@@ -8,6 +8,7 @@ use crate::run::{Cancelled, RunSettings};
 use crate::verify::boxes::BoxTree;
 use glam::DVec3;
 use rayon::prelude::*;
+use std::collections::{BTreeSet, HashSet};
 
 /// Strips are chosen anew this often without the triangles that meet something. Each time most conflicts are gone; what
 /// is left after so many goes round in circles.
@@ -35,11 +36,15 @@ pub(super) struct Around<'a> {
     pub kept: &'a [bool],
 }
 
+/// Triangles of strips that were found to meet nothing that is there. They stay so while nothing is added.
+pub(super) type Free = HashSet<[u32; 3]>;
+
 impl Around<'_> {
     /// The triangles of ribbons that meet nothing, or where they would.
     pub fn fit(
         &self,
         ribbons: &mut [Ribbon],
+        free: &mut Free,
         run: &RunSettings,
     ) -> Result<Result<Vec<[u32; 3]>, Vec<Conflict>>, Cancelled> {
         let mut paths: Vec<Vec<Step>> = vec![Vec::new(); ribbons.len()];
@@ -48,10 +53,13 @@ impl Around<'_> {
         for tries in 0.. {
             run.check()?;
             let mut stuck = false;
-            for (n, ribbon) in ribbons.iter().enumerate().filter(|&(n, _)| stale[n]) {
-                match ribbon.cheapest() {
-                    Some(path) => paths[n] = path,
-                    None => stuck = true,
+            let again =
+                ribbons.par_iter().zip(&stale).map(|(ribbon, &stale)| stale.then(|| ribbon.cheapest()));
+            for (path, again) in paths.iter_mut().zip(again.collect::<Vec<_>>()) {
+                match again {
+                    Some(Some(found)) => *path = found,
+                    Some(None) => stuck = true,
+                    None => {}
                 }
             }
             if stuck || tries == TRIES {
@@ -70,9 +78,13 @@ impl Around<'_> {
                 .par_iter()
                 .zip(&triangles)
                 .with_min_len(16)
-                .filter(|&(_, &t)| self.meets(t))
+                .filter(|&(_, t)| !free.contains(t) && self.meets(*t))
                 .map(|(&step, _)| step)
                 .collect();
+            let is_bad: BTreeSet<(usize, Step)> = bad.iter().copied().collect();
+            free.extend(
+                steps.iter().zip(&triangles).filter(|&(step, _)| !is_bad.contains(step)).map(|(_, &t)| t),
+            );
             if bad.is_empty() {
                 let strip = TriMesh { vertices: self.mesh.vertices.clone(), triangles };
                 bad = costlier_of_pairs(&strip, &steps, ribbons, run)?;
@@ -94,8 +106,7 @@ impl Around<'_> {
         let corners = t.map(|v| self.mesh.vertices[v as usize]);
         let [a, b, c] = corners.map(DVec3::from);
         let (lo, hi) = (a.min(b).min(c), a.max(b).max(c));
-        // Half the longest side, and a little for rounding.
-        self.tree.near(lo.midpoint(hi), 0.500_001 * (hi - lo).max_element(), |n| {
+        self.tree.meeting([lo, hi], |n| {
             let n = n as usize;
             let is_there = n < self.patch || self.kept[n - self.patch];
             if is_there && meeting_point(t, corners, self.mesh.triangles[n], self.mesh.corners(n)).is_some() {

@@ -217,8 +217,7 @@ fn meets(patch: &TriMesh, tree: &BoxTree, t: [u32; 3]) -> bool {
     let [a, b, c] = corners.map(DVec3::from);
     let (lo, hi) = (a.min(b).min(c), a.max(b).max(c));
     let mut found = false;
-    // Half the longest side, and a little for rounding.
-    tree.near(lo.midpoint(hi), 0.500_001 * (hi - lo).max_element(), |n| {
+    tree.meeting([lo, hi], |n| {
         let n = n as usize;
         found |= meeting_point(t, corners, patch.triangles[n], patch.corners(n)).is_some();
     });

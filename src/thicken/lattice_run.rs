@@ -2,7 +2,7 @@
 
 use super::boundary::Boundary;
 use super::crossings;
-use super::nodes::Nodes;
+use super::nodes::{Extent, Nodes};
 use super::open_mesh::OpenMesh;
 use super::rim::Reach;
 use super::rods::Rods;
@@ -41,6 +41,13 @@ pub(super) struct Work<'a> {
     pub shaped: Shaped,
 }
 
+/// What is known of a surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Surface<'a> {
+    pub topology: &'a Topology,
+    pub boundary: &'a Boundary,
+}
+
 impl Work<'_> {
     /// Checks that a lattice fits into the memory that the settings allow.
     pub fn check_memory(&self, patch: &TriMesh, at: Resolved) -> Result<(), Error> {
@@ -56,34 +63,52 @@ impl Work<'_> {
     }
 
     /// The solid on one side of `surface`, whose triangles are its first ones.
-    pub fn on_lattice(&mut self, surface: &TriMesh, at: Resolved) -> Result<Result<TriMesh, Blocked>, Error> {
+    pub fn on_lattice(
+        &mut self,
+        surface: &TriMesh,
+        known: Option<Surface<'_>>,
+        at: Resolved,
+    ) -> Result<Result<TriMesh, Blocked>, Error> {
         let Work { settings, run, ref mut times, ref mut shaped } = *self;
         let Resolved { thickness, voxel } = at;
         let started = Instant::now();
-        let topology = run.install(|| Topology::new(surface));
-        let boundary = Boundary::new(surface, &topology).map_err(ThickenError::from)?;
+        let (own_topology, own_boundary);
+        let Surface { topology, boundary } = match known {
+            Some(known) => known,
+            None => {
+                own_topology = run.install(|| Topology::new(surface));
+                own_boundary = Boundary::new(surface, &own_topology).map_err(ThickenError::from)?;
+                Surface { topology: &own_topology, boundary: &own_boundary }
+            }
+        };
         if boundary.is_empty() && settings.map.is_none() {
             times.hierarchy += started.elapsed().as_secs_f64();
             return Ok(Ok(closed::shell(surface, at, settings, times, run)?));
         }
         let distance = {
             let _phase = run.phase(Phase::Hierarchy, 0);
-            run.install(|| SignedDistance::new(surface, &topology))
+            run.install(|| SignedDistance::new(surface, topology))
         };
         run.check()?;
         times.hierarchy += started.elapsed().as_secs_f64();
 
         let lattice = Lattice { voxel };
         let started = Instant::now();
-        let nodes = Nodes::new(&distance, lattice, thickness + BEYOND * voxel, run)?;
+        let thinnest = settings.map.iter().flatten().copied().fold(thickness, f64::min);
+        let extent = Extent {
+            reach: thickness + BEYOND * voxel,
+            above: (BEYOND - LID) * voxel,
+            inside: [(LID + BEYOND) * voxel, thinnest - BEYOND * voxel],
+        };
+        let (nodes, lists) = Nodes::new(&distance, boundary, lattice, extent, run)?;
         let solid = Solid {
             distance: &distance,
-            boundary: &boundary,
+            boundary,
             thickness,
             map: settings.map.as_deref(),
             lid: LID * voxel,
-            rods: &Rods::new(surface, &boundary, thickness, ROD * voxel),
-            lists: Some(&nodes.lists),
+            rods: &Rods::new(surface, boundary, thickness, ROD * voxel),
+            lists: Some(&lists),
         };
         let (signs, triangles) = nodes.classify(&solid, lattice, run);
         times.nodes += started.elapsed().as_secs_f64();
@@ -95,7 +120,7 @@ impl Work<'_> {
 
         let started = Instant::now();
         let reach = Reach { across: 1.5 * thickness, along: 4.0 * voxel };
-        let stitched = run.install(|| stitch::stitch(surface, &boundary, open, reach, run))?;
+        let stitched = run.install(|| stitch::stitch(surface, boundary, open, reach, run))?;
         times.boundary += started.elapsed().as_secs_f64();
         let Stitched { mut mesh, edges } = match stitched {
             Ok(stitched) => stitched,

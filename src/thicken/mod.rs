@@ -19,6 +19,7 @@ mod fit;
 mod holes;
 mod lattice_run;
 mod lids;
+mod near_nodes;
 mod nodes;
 mod open_mesh;
 mod ribbon;
@@ -40,7 +41,7 @@ use crate::mesh::{Topology, TriMesh};
 use crate::run::RunSettings;
 use boundary::Boundary;
 use holes::{Capped, Holes};
-use lattice_run::Work;
+use lattice_run::{Surface, Work};
 use settings::Resolved;
 use shape::Shaped;
 use std::time::Instant;
@@ -76,8 +77,10 @@ pub fn thicken(
     let started = Instant::now();
     let patch = as_written(patch, settings);
     let topology = run.install(|| Topology::new(&patch));
-    let boundary = Boundary::new(&patch, &topology).map_err(ThickenError::from)?;
-    run.install(|| check::check_patch(&patch, run))?.map_err(ThickenError::from)?;
+    let (boundary, checked) =
+        run.install(|| rayon::join(|| Boundary::new(&patch, &topology), || check::check_patch(&patch, run)));
+    let boundary = boundary.map_err(ThickenError::from)?;
+    checked?.map_err(ThickenError::from)?;
     let holes = Holes::new(&patch, &topology, &boundary);
     let mut work = Work { settings, run, times: ThickenTimes::default(), shaped: Shaped::default() };
     work.times.hierarchy = started.elapsed().as_secs_f64();
@@ -86,7 +89,10 @@ pub fn thicken(
     let mut closed = holes.unseen(at.voxel);
     let (mesh, capped) = loop {
         let Capped { mesh: surface, places } = run.install(|| holes.close(&closed, run))?;
-        let Blocked { obstacle, at: place, edges } = match work.on_lattice(&surface, at)? {
+        let known = Surface { topology: &topology, boundary: &boundary };
+        // Without caps the surface is the patch.
+        let known = places.is_empty().then_some(known);
+        let Blocked { obstacle, at: place, edges } = match work.on_lattice(&surface, known, at)? {
             Ok(mesh) => break (mesh, places),
             Err(blocked) => blocked,
         };

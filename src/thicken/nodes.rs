@@ -1,7 +1,8 @@
 //! Which nodes are in the solid (\[WC13\] section 3): those of the band around S whose closest triangle says so.
 
+use super::boundary::Boundary;
 use super::solid::{Place, Solid};
-use crate::band::{BandSettings, LeafMask, SignField, build};
+use crate::band::{BandSettings, Below, LeafMask, SignField, build_below};
 use crate::candidates::CandidateLists;
 use crate::distance::SignedDistance;
 use crate::edge::NodeTriangles;
@@ -17,34 +18,54 @@ use std::convert::Infallible;
 #[derive(Debug)]
 pub(super) struct Nodes {
     origins: Vec<Ijk>,
-    /// Leaf by leaf 512 closest triangles; -1 beyond the band. In the pieces in which they were made.
+    /// Leaf by leaf 512 closest triangles; -1 beyond the band, and where nobody needs them. In the pieces in which they were made.
     closest: Vec<Vec<i32>>,
-    pub lists: CandidateLists,
+    /// Leaf by leaf the nodes that are known to be in the solid.
+    inside: Vec<LeafMask>,
+    /// Leaves that are in the solid as a whole.
+    whole: Vec<Ijk>,
+}
+
+/// Where nodes are looked for, in model units.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extent {
+    /// The distance from the mesh up to which they matter.
+    pub reach: f64,
+    /// What is clearly more than this over the mesh does not.
+    pub above: f64,
+    /// Distances that are sure to be in the solid where the closest point is not on the boundary, with all nodes beside.
+    pub inside: [f64; 2],
 }
 
 impl Nodes {
-    /// The nodes within `reach`, in model units, of the mesh: the candidate region of \[WC13\] Definition 4. A distance
-    /// without its sign decides, since the sign of an open mesh's distance jumps.
+    /// The nodes of the candidate region of \[WC13\] Definition 4, on one side of the mesh, and the triangles near them.
     pub fn new(
         distance: &SignedDistance,
+        boundary: &Boundary,
         lattice: Lattice,
-        reach: f64,
+        Extent { reach, above, inside }: Extent,
         run: &RunSettings,
-    ) -> Result<Nodes, Error> {
+    ) -> Result<(Nodes, CandidateLists), Error> {
         let settings = BandSettings { lattice, r: 0.0, half_width: reach / lattice.voxel, slab: Slab::WHOLE };
-        let (mut origins, mut closest, mut lists) = (Vec::new(), Vec::new(), Vec::new());
-        build(distance, &settings, run, |batch| {
-            origins.extend_from_slice(&batch.origins);
-            closest.push(batch.closest);
+        let at_boundary = boundary.triangles(distance.mesh());
+        let below = Below { above, inside, at_boundary: &at_boundary };
+        let mut nodes =
+            Nodes { origins: Vec::new(), closest: Vec::new(), inside: Vec::new(), whole: Vec::new() };
+        let mut lists = Vec::new();
+        build_below(distance, &settings, below, run, |batch| {
+            nodes.origins.extend_from_slice(&batch.origins);
+            nodes.inside.extend_from_slice(&batch.inside);
+            nodes.whole.extend(batch.inside_blocks.iter().map(|&(origin, _)| origin));
+            nodes.closest.push(batch.closest);
             lists.push((batch.origins, batch.lists));
             Ok::<_, Error>(())
         })?;
-        Ok(Nodes { origins, closest, lists: CandidateLists::new(lattice, lists) })
+        Ok((nodes, CandidateLists::new(lattice, lists)))
     }
 
     /// Which of them are in the solid, and the closest triangles of all.
     pub fn classify(
-        &self,
+        self,
         solid: &Solid<'_>,
         lattice: Lattice,
         run: &RunSettings,
@@ -52,20 +73,26 @@ impl Nodes {
         run.install(|| {
             let leaves: Vec<&[i32]> =
                 self.closest.iter().flat_map(|part| part.chunks_exact(LEAF_SIZE)).collect();
-            let inside: Vec<LeafMask> = self
+            let mut inside: Vec<LeafMask> = self
                 .origins
                 .par_iter()
                 .zip(leaves)
+                .zip(&self.inside)
                 .with_min_len(16)
-                .map(|(&origin, closest)| inside_in_leaf(solid, lattice, origin, closest))
+                .map(|((&origin, closest), known)| {
+                    let found = inside_in_leaf(solid, lattice, origin, closest);
+                    std::array::from_fn(|x| found[x] | known[x])
+                })
                 .collect();
-            // Nodes beyond the band are farther from S than the shell.
+            inside.resize(self.origins.len() + self.whole.len(), [!0; 8]);
+            let origins = [&self.origins[..], &self.whole].concat();
+            // Nodes beyond the band are farther from S than the shell, or over S.
             let outside = |missing: &[Ijk]| Ok::<_, Infallible>(vec![false; missing.len()]);
-            let signs = match SignField::new(&self.origins, &inside, Slab::WHOLE, outside) {
+            let signs = match SignField::new(&origins, &inside, Slab::WHOLE, outside) {
                 Ok(signs) => signs,
                 Err(never) => match never {},
             };
-            let triangles = NodeTriangles::new(&signs, &self.origins, self.closest.clone());
+            let triangles = NodeTriangles::new(&signs, &self.origins, self.closest);
             (signs, triangles)
         })
     }

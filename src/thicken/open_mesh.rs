@@ -8,7 +8,8 @@ use crate::geom::triangle::Side;
 use crate::lattice::Lattice;
 use crate::mesh::{Topology, TriMesh};
 use crate::run::RunSettings;
-use std::collections::BTreeSet;
+use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What [`OpenMesh::close`] may do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +30,8 @@ pub(super) struct OpenMesh {
     pub kept: Vec<bool>,
     /// Per triangle the number of the lattice edge that it is at.
     pub edges: Vec<u32>,
+    /// All triangles at rims are among these, which are few beside all. In any order, some more than once.
+    near_rims: Vec<u32>,
 }
 
 impl OpenMesh {
@@ -45,8 +48,11 @@ impl OpenMesh {
             (0u32..).zip(&sizes).flat_map(|(n, &size)| std::iter::repeat_n(n, usize::from(size))).collect();
         let topology = run.install(|| Topology::new(&mesh));
         let kept: Vec<bool> = edges.iter().map(|&n| found.parts[n as usize] != Part::Lid).collect();
-        let mut open = OpenMesh { mesh, topology, kept, edges };
-        let at_rim = (0..open.mesh.vertices.len() as u32).filter(|&v| open.is_at_rim(v)).collect();
+        let mut open = OpenMesh { mesh, topology, kept, edges, near_rims: Vec::new() };
+        let count = open.mesh.vertices.len() as u32;
+        let at_rim: Vec<u32> =
+            run.install(|| (0..count).into_par_iter().filter(|&v| open.is_at_rim(v)).collect());
+        open.near_rims = at_rim.iter().flat_map(|&v| open.topology.around_vertex(v)).copied().collect();
         open.open_pinches(at_rim);
         Ok(open)
     }
@@ -58,7 +64,7 @@ impl OpenMesh {
         let mut seen: BTreeSet<usize> = front.iter().copied().collect();
         for ring in 0..=rings {
             for &t in &front {
-                if std::mem::replace(&mut self.kept[t], false) {
+                if self.drop(t) {
                     at_rim.extend(self.mesh.triangles[t]);
                 }
             }
@@ -88,12 +94,29 @@ impl OpenMesh {
                 Side::ALL.into_iter().any(|s| corners[s.index()] == v && self.is_rim(t, s))
             };
             if around.iter().filter(starts).count() > 1 {
-                for &t in around {
-                    if std::mem::replace(&mut self.kept[t as usize], false) {
+                for t in around.to_vec() {
+                    if self.drop(t as usize) {
                         at_rim.extend(self.mesh.triangles[t as usize]);
                     }
                 }
             }
+        }
+    }
+
+    /// Leaves out a triangle. Says whether it was there.
+    fn drop(&mut self, t: usize) -> bool {
+        let was_kept = std::mem::replace(&mut self.kept[t], false);
+        if was_kept {
+            self.changed(t as u32);
+        }
+        was_kept
+    }
+
+    /// Remembers that rims may have come to a triangle and those beside it.
+    fn changed(&mut self, t: u32) {
+        self.near_rims.push(t);
+        for side in Side::ALL {
+            self.near_rims.extend(self.topology.around_edge(t, side).skip(1).map(|(other, _)| other));
         }
     }
 
@@ -110,17 +133,16 @@ impl OpenMesh {
         for (_, rim) in rims.iter().enumerate().filter(|&(n, _)| !wanted(n)) {
             rim.iter().for_each(|&v| is_wanted[v as usize] = false);
         }
-        let mut seen = vec![false; self.kept.len()];
+        let mut parts = vec![0; self.kept.len()];
         let mut flips = Vec::new();
+        let mut number = 0;
         for (_, rim) in rims.iter().enumerate().filter(|&(n, _)| wanted(n)) {
             for &start in rim.iter().flat_map(|&v| self.topology.around_vertex(v)) {
-                if seen[start as usize] || change == Change::Drop && !self.kept[start as usize] {
+                if parts[start as usize] != 0 || change == Change::Drop && !self.kept[start as usize] {
                     continue;
                 }
-                let (part, is_whole) = self.part_of(start, &mut seen, &is_wanted);
-                if is_whole {
-                    flips.extend(part);
-                }
+                number += 1;
+                flips.extend(self.part_of(start, number, &mut parts, &is_wanted).unwrap_or_default());
             }
         }
         // Holes first: an island beside one is no island then.
@@ -130,72 +152,65 @@ impl OpenMesh {
         let found = !flips.is_empty();
         for t in flips {
             self.kept[t as usize] = !self.kept[t as usize];
+            self.changed(t);
         }
         found
     }
 
-    /// The triangles joined to one by edges that are kept, or not, as it is; whether all of its vertices at rims are
-    /// wanted ones.
-    fn part_of(&self, start: u32, seen: &mut [bool], is_wanted: &[bool]) -> (Vec<u32>, bool) {
+    /// The triangles joined to one by edges that are kept, or not, as it is; `None` when a vertex of theirs is at a rim that is
+    /// not wanted. They get `number` in `parts`, where 0 stands for no part. Most of a large part is not looked at: what
+    /// comes from another side to a part that was given up belongs to it.
+    fn part_of(&self, start: u32, number: u32, parts: &mut [u32], is_wanted: &[bool]) -> Option<Vec<u32>> {
         let kept = self.kept[start as usize];
-        let (mut part, mut is_whole, mut next) = (Vec::new(), true, vec![start]);
-        seen[start as usize] = true;
-        while let Some(t) = next.pop() {
-            part.push(t);
+        let mut part = vec![start];
+        parts[start as usize] = number;
+        let mut next = 0;
+        while let Some(&t) = part.get(next) {
+            next += 1;
             let corners = self.mesh.triangles[t as usize];
-            is_whole &= corners.into_iter().all(|v| is_wanted[v as usize]);
+            if !corners.into_iter().all(|v| is_wanted[v as usize]) {
+                return None;
+            }
             for side in Side::ALL {
-                for (other, _) in self.topology.around_edge(t, side).skip(1) {
-                    if self.kept[other as usize] == kept
-                        && !std::mem::replace(&mut seen[other as usize], true)
-                    {
-                        next.push(other);
+                let mut beside = self.topology.around_edge(t, side).skip(1).peekable();
+                // The rest of a large part of the lid is not there.
+                beside.peek()?;
+                for (other, _) in beside {
+                    if self.kept[other as usize] != kept || parts[other as usize] == number {
+                        continue;
                     }
+                    if parts[other as usize] != 0 {
+                        return None;
+                    }
+                    parts[other as usize] = number;
+                    part.push(other);
                 }
             }
         }
-        (part, is_whole)
+        Some(part)
     }
 
     /// The vertices of each rim, in the direction in which the kept triangles run through its edges.
     pub fn rims(&self) -> Vec<Vec<u32>> {
-        let mut next = vec![u32::MAX; self.mesh.vertices.len()];
-        for (t, triangle) in (0u32..).zip(&self.mesh.triangles) {
-            if !self.kept[t as usize] {
-                continue;
-            }
+        let mut near = self.near_rims.clone();
+        near.sort_unstable();
+        near.dedup();
+        let mut next = BTreeMap::new();
+        for t in near {
+            let triangle = self.mesh.triangles[t as usize];
             for side in Side::ALL.into_iter().filter(|&side| self.is_rim(t, side)) {
-                next[triangle[side.index()] as usize] = triangle[side.next().index()];
+                next.insert(triangle[side.index()], triangle[side.next().index()]);
             }
         }
         let mut rims = Vec::new();
-        for start in 0..next.len() as u32 {
+        while let Some((&start, _)) = next.first_key_value() {
             let (mut at, mut rim) = (start, Vec::new());
-            while next[at as usize] != u32::MAX {
+            while let Some(to) = next.remove(&at) {
                 rim.push(at);
-                at = std::mem::replace(&mut next[at as usize], u32::MAX);
+                at = to;
             }
-            if !rim.is_empty() {
-                rims.push(rim);
-            }
+            rims.push(rim);
         }
         rims
     }
-}
-
-/// Drops vertices from number `first` on that no triangle has.
-pub(super) fn without_idle_vertices(mesh: &mut TriMesh, first: usize) {
-    let mut used = vec![false; mesh.vertices.len()];
-    mesh.triangles.as_flattened().iter().for_each(|&v| used[v as usize] = true);
-    let mut numbers: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
-    let mut next = first;
-    for v in first..mesh.vertices.len() {
-        numbers[v] = next as u32;
-        if used[v] {
-            mesh.vertices[next] = mesh.vertices[v];
-            next += 1;
-        }
-    }
-    mesh.vertices.truncate(next);
-    mesh.triangles.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
 }

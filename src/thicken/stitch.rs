@@ -3,7 +3,7 @@
 use super::boundary::Boundary;
 use super::cap::Polygon;
 use super::curve::Curve;
-use super::fit::{Around, Conflict};
+use super::fit::{Around, Conflict, Free};
 use super::lids;
 use super::open_mesh::{Change, OpenMesh};
 use super::ribbon::{Ribbon, Side};
@@ -227,6 +227,8 @@ pub(super) fn stitch(
         close_strays(patch, boundary, &mut open, reach, Change::Drop);
     }
     let mut cuts = 0;
+    // From here on, triangles are only left out.
+    let mut free = Free::default();
     let mut cut_places = CutPlaces { places: Vec::new(), near: reach.along };
     let strip = loop {
         let Gaps { mut ribbons, lids } = match gaps(patch, boundary, &open, first, reach) {
@@ -234,7 +236,7 @@ pub(super) fn stitch(
             Err(blocked) => return Ok(Err(blocked)),
         };
         let around = Around { mesh: &mesh, tree: &tree, patch: patch_count, kept: &open.kept };
-        let fit = match around.fit(&mut ribbons, run)? {
+        let fit = match around.fit(&mut ribbons, &mut free, run)? {
             Ok(strip) => around.fit_lids(&lids, strip, run)?,
             Err(conflicts) => Err(conflicts),
         };
@@ -274,7 +276,7 @@ pub(super) fn stitch(
         number <= patch_count || open.kept[number - 1 - patch_count]
     });
     mesh.triangles.extend(strip);
-    super::open_mesh::without_idle_vertices(&mut mesh, first as usize);
+    mesh.drop_idle_vertices(first as usize);
     let kept = open.edges.iter().zip(&open.kept).filter(|&(_, &kept)| kept);
     let edges = kept.map(|(&edge, _)| edge).collect();
     Ok(Ok(Stitched { mesh, edges }))

@@ -107,8 +107,13 @@ impl BoxTree {
     }
 
     /// Calls `visit` with each triangle whose box comes within `margin` of `p`.
-    pub fn near(&self, p: DVec3, margin: f64, mut visit: impl FnMut(u32)) {
-        let query = Box32::around([(p - margin).to_array(), (p + margin).to_array()]);
+    pub fn near(&self, p: DVec3, margin: f64, visit: impl FnMut(u32)) {
+        self.meeting([p - margin, p + margin], visit);
+    }
+
+    /// Calls `visit` with each triangle whose box meets the one with these corners, the lower one first.
+    pub fn meeting(&self, corners: [DVec3; 2], mut visit: impl FnMut(u32)) {
+        let query = Box32::around(corners.map(|c| c.to_array()));
         self.leaves(&query, 0, &mut Vec::new(), |leaf| {
             for position in self.leaf(leaf) {
                 if self.boxes[position].meets(&query) {
@@ -116,6 +121,17 @@ impl BoxTree {
                 }
             }
         });
+    }
+
+    /// Lets the box at a position of [`order`](Self::order) hold what is between these corners, too.
+    pub fn grow(&mut self, position: usize, corners: [DVec3; 2]) {
+        let more = Box32::around(corners.map(|c| c.to_array()));
+        self.boxes[position] = self.boxes[position].with(more);
+        let mut number = position / LEAF;
+        for level in &mut self.levels {
+            level[number] = level[number].with(more);
+            number /= WIDTH;
+        }
     }
 
     /// Finds all pairs of triangles whose boxes meet. Each task has a result of its own, made by `start` and

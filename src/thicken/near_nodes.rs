@@ -1,0 +1,82 @@
+//! Nodes of the lattice that are near some others.
+
+use crate::band::{LeafId, LeafMask, SignField};
+use crate::lattice::Axis;
+use rayon::prelude::*;
+
+/// How far nodes are from others along each axis at most. The contour's faces at an edge take all edges of the four cells
+/// around it, and the next faces are there, too: with them holes and islands of up to five faces are closed.
+const STEPS: usize = 3;
+
+/// The nodes at most [`STEPS`] steps along each axis from those of `masks`, leaf by leaf.
+pub(super) fn near_nodes(signs: &SignField, mut masks: Vec<LeafMask>) -> Vec<LeafMask> {
+    let leaves: Vec<LeafId> = signs.leaves().collect();
+    for axis in Axis::ALL {
+        for _ in 0..STEPS {
+            let wider = leaves.par_iter().with_min_len(64).map(|&leaf| {
+                let beside = |step: i32| {
+                    let mut delta = [0; 3];
+                    delta[axis as usize] = step;
+                    signs.neighbour(leaf, delta).map_or([0; 8], |other| masks[other.0 as usize])
+                };
+                widened(axis, beside(-1), masks[leaf.0 as usize], beside(1))
+            });
+            masks = wider.collect();
+        }
+    }
+    masks
+}
+
+/// The bits with z = 0 in each row of eight.
+const Z_FIRST: u64 = 0x0101_0101_0101_0101;
+/// The bits with z = 7 in each row of eight.
+const Z_LAST: u64 = Z_FIRST << 7;
+
+/// The nodes of a leaf's mask, and those next to them and to the nodes of the leaves before and after it along an axis.
+fn widened(axis: Axis, before: LeafMask, own: LeafMask, after: LeafMask) -> LeafMask {
+    std::array::from_fn(|x| {
+        let [low, word, high] = [before[x], own[x], after[x]];
+        word | match axis {
+            Axis::X => {
+                (if x > 0 { own[x - 1] } else { before[7] }) | if x < 7 { own[x + 1] } else { after[0] }
+            }
+            Axis::Y => word << 8 | word >> 8 | low >> 56 | high << 56,
+            Axis::Z => {
+                (word & !Z_LAST) << 1 | (word & !Z_FIRST) >> 1 | (low & Z_LAST) >> 7 | (high & Z_FIRST) << 7
+            }
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lattice::Ijk;
+    use crate::slab::Slab;
+    use std::convert::Infallible;
+
+    #[test]
+    fn a_node_has_its_neighbours_in_all_leaves() {
+        let origins: Vec<Ijk> = (0..27).map(|n| Ijk::new(n / 9 * 8, n / 3 % 3 * 8, n % 3 * 8)).collect();
+        let missing = |ring: &[Ijk]| Ok::<_, Infallible>(vec![false; ring.len()]);
+        let signs = SignField::new(&origins, &[[0; 8]; 27], Slab::WHOLE, missing).unwrap();
+        let bit =
+            |mask: &LeafMask, node: Ijk| mask[node.number_in_leaf() >> 6] >> (node.number_in_leaf() & 63) & 1;
+        for node in [Ijk::new(8, 15, 11), Ijk::new(12, 8, 15), Ijk::new(10, 13, 8)] {
+            let holds = |leaf: LeafId| node.0.map(|x| x & !7) == signs.origin(leaf).0;
+            let mut masks = vec![[0; 8]; signs.len()];
+            for leaf in signs.leaves().filter(|&leaf| holds(leaf)) {
+                let number = node.number_in_leaf();
+                masks[leaf.0 as usize][number >> 6] |= 1 << (number & 63);
+            }
+            let wider = near_nodes(&signs, masks);
+            for leaf in signs.leaves() {
+                for number in 0..512 {
+                    let other = Ijk::in_leaf(signs.origin(leaf), number);
+                    let is_near = (other - node).0.iter().all(|d| d.unsigned_abs() as usize <= STEPS);
+                    assert_eq!(bit(&wider[leaf.0 as usize], other) == 1, is_near, "{other:?}");
+                }
+            }
+        }
+    }
+}
