@@ -38,6 +38,14 @@ impl BlockLists {
         self.leaves.is_empty()
     }
 
+    /// Gives back room that is not used.
+    pub fn shrink_to_fit(&mut self) {
+        self.leaves.shrink_to_fit();
+        self.ends.shrink_to_fit();
+        self.bases.shrink_to_fit();
+        self.entries.shrink_to_fit();
+    }
+
     /// Begins the next leaf.
     pub fn begin_leaf(&mut self) {
         self.leaves.push(Leaf { mask: 0, first: self.ends.len() });

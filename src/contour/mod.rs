@@ -91,6 +91,7 @@ use grid::Grid;
 use numbering::CellNumbers;
 use output::Triangulation;
 use recover::Wish;
+use rounds::LeafMesh;
 use std::ops::Range;
 
 /// Settings of [`contour`].
@@ -159,9 +160,31 @@ pub fn contour(
     settings: &ContourSettings,
     run: &RunSettings,
 ) -> Result<(TriMesh, ContourStatistics), ContourError> {
-    let SlabContour { mesh, statistics, .. } =
-        contour_slab(signs, crossings, lattice, surface, settings, run)?;
+    let contour = contour_slab(signs, crossings, lattice, surface, settings, run)?;
+    let SlabContour { mesh, statistics, .. } = run.install(|| contour.into_ordered());
     Ok((mesh, statistics))
+}
+
+/// The contour of a slab before its vertices and triangles are in order. That takes as much memory again, for which what
+/// the contour was made of can be dropped first.
+#[derive(Debug)]
+pub struct UnorderedContour {
+    mesh: LeafMesh,
+    /// The leaves that the slab owns.
+    owned: Range<usize>,
+    statistics: ContourStatistics,
+}
+
+impl UnorderedContour {
+    /// In the order of [`contour`], on the current rayon pool.
+    pub fn into_ordered(self) -> SlabContour {
+        let UnorderedContour { mesh, owned, mut statistics } = self;
+        let mesh = mesh.into_ordered();
+        let (vertices, triangles) = mesh.of_leaves(owned);
+        statistics.vertices = vertices.len() as u64;
+        statistics.triangles = triangles.len() as u64;
+        SlabContour { mesh: mesh.mesh, vertices, triangles, firsts: mesh.triangles, statistics }
+    }
 }
 
 /// The contour of a slab and of what is computed around it.
@@ -197,7 +220,7 @@ pub fn contour_slab(
     surface: Option<&dyn Surface>,
     settings: &ContourSettings,
     run: &RunSettings,
-) -> Result<SlabContour, ContourError> {
+) -> Result<UnorderedContour, ContourError> {
     assert_eq!(crossings.samples.len(), crossings.numbers.len(), "one sample for each crossing");
     let reach = settings.reach.unwrap_or_else(|| reach(signs, crossings));
     let grid = Grid::new(lattice, settings.precision, reach)?;
@@ -231,14 +254,10 @@ pub fn contour_slab(
                 statistics.beyond_tolerance = Some(refined.beyond);
             }
         }
-        let mesh = mesh.into_ordered();
         // Leaves are sorted along x first.
         let first = signs.leaves().take_while(|&leaf| !cells.owns(leaf)).count();
         let owned = signs.leaves().skip(first).take_while(|&leaf| cells.owns(leaf)).count();
-        let (vertices, triangles) = mesh.of_leaves(first..first + owned);
-        statistics.vertices = vertices.len() as u64;
-        statistics.triangles = triangles.len() as u64;
-        Ok(SlabContour { mesh: mesh.mesh, vertices, triangles, firsts: mesh.triangles, statistics })
+        Ok(UnorderedContour { mesh, owned: first..first + owned, statistics })
     })
 }
 

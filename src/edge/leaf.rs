@@ -3,7 +3,7 @@
 use super::hybrid::{Direction, GridEdge, NodeTriangle, Root, Solver};
 use super::solve::{NearTriangles, RootMethod};
 use super::statistics::EdgeStatistics;
-use super::{Crossing, EdgeNumbers, bisection};
+use super::{Crossing, EdgeNumbers, LeafTriangles, bisection};
 use crate::band::{LeafId, LeafMask, SignField};
 use crate::candidates::CandidateLists;
 use crate::lattice::{Axis, Ijk, Lattice};
@@ -30,8 +30,8 @@ struct Leaf<'a> {
     origin: Ijk,
     inside: &'a LeafMask,
     /// Closest triangles of its nodes, and of those of the next leaf along each axis.
-    own: Option<&'a [i32]>,
-    next: [Option<&'a [i32]>; 3],
+    own: Option<LeafTriangles<'a>>,
+    next: [Option<LeafTriangles<'a>>; 3],
 }
 
 impl LeafSolver<'_> {
@@ -124,7 +124,7 @@ impl LeafSolver<'_> {
             7 => (leaf.next[along], number - 7 * step),
             _ => (leaf.own, number + step),
         };
-        let known = [(leaf.own, number), (ids, next)].map(|(ids, n)| u32::try_from(ids?[n]).ok());
+        let known = [(leaf.own, number), (ids, next)].map(|(ids, n)| ids?.get(n));
         // A triangle near one end is near the other.
         let guess = known[0].or(known[1]).unwrap_or(0);
         let [a, b] = known.map(|known| known.map_or(NodeTriangle::Guess(guess), NodeTriangle::Known));

@@ -8,11 +8,13 @@ mod crossings;
 mod following;
 mod hybrid;
 mod leaf;
+mod node_triangles;
 mod regions;
 mod shared;
 mod solve;
 mod statistics;
 
 pub use crossings::{Crossing, Crossings, EdgeId, EdgeNumbers, TooManyEdges, bits};
-pub use solve::{EdgeSettings, NearTriangles, NodeTriangles, RootMethod, solve, solve_by};
+pub use node_triangles::{LeafTriangles, NodeTriangles, PartTriangles};
+pub use solve::{EdgeSettings, NearTriangles, RootMethod, solve, solve_by};
 pub use statistics::EdgeStatistics;

@@ -3,60 +3,14 @@
 use super::hybrid::{Solver, TOLERANCE};
 use super::leaf::LeafSolver;
 use super::statistics::EdgeStatistics;
-use super::{Crossing, Crossings, EdgeNumbers};
+use super::{Crossing, Crossings, EdgeNumbers, NodeTriangles};
 use crate::band::{LeafId, SignField};
 use crate::candidates::CandidateLists;
 use crate::distance::SignedDistance;
-use crate::lattice::{Ijk, LEAF_SIZE, Lattice};
+use crate::lattice::Lattice;
 use crate::run::{Cancelled, Phase, RunSettings};
 use crate::slab::Slab;
 use rayon::prelude::*;
-
-/// The slot of a leaf of the ring.
-const RING: [u32; 2] = [u32::MAX; 2];
-
-/// The closest triangles of the band's nodes, by leaf of a [`SignField`].
-#[derive(Clone, Debug, Default)]
-pub struct NodeTriangles {
-    /// Per leaf of the field its part and its place there, or `u32::MAX` twice for a leaf of the ring.
-    slots: Vec<[u32; 2]>,
-    /// As they were made: they are not moved together.
-    parts: Vec<Vec<i32>>,
-}
-
-impl NodeTriangles {
-    /// `parts` holds, one after the other, 512 numbers for each of the leaves `origins`, -1 where none is known.
-    ///
-    /// # Panics
-    /// When the lengths do not match.
-    pub fn new(signs: &SignField, origins: &[Ijk], parts: Vec<Vec<i32>>) -> Self {
-        let places: Vec<[u32; 2]> = (0..)
-            .zip(&parts)
-            .flat_map(|(part, ids)| (0..(ids.len() / LEAF_SIZE) as u32).map(move |place| [part, place]))
-            .collect();
-        assert_eq!(places.len(), origins.len(), "512 triangle numbers per leaf");
-        let mut order: Vec<u32> = (0..origins.len() as u32).collect();
-        order.sort_unstable_by_key(|&n| origins[n as usize]);
-        // Both lists are sorted by origin now.
-        let mut order = order.into_iter().peekable();
-        let slots = signs
-            .leaves()
-            .map(|leaf| {
-                let own = order.next_if(|&n| origins[n as usize] == signs.origin(leaf));
-                own.map_or(RING, |n| places[n as usize])
-            })
-            .collect();
-        NodeTriangles { slots, parts }
-    }
-
-    /// The numbers of a leaf's nodes, -1 where none is known; `None` for a leaf of the ring.
-    pub fn of_leaf(&self, leaf: LeafId) -> Option<&[i32]> {
-        // Without any parts, all triangles are unknown.
-        let [part, place] = *self.slots.get(leaf.0 as usize)?;
-        let first = place as usize * LEAF_SIZE;
-        self.parts.get(part as usize).map(|ids| &ids[first..first + LEAF_SIZE])
-    }
-}
 
 /// What is known of the triangles that are near the edges.
 #[derive(Clone, Debug, Default)]

@@ -4,7 +4,7 @@ use super::stored_band::StoredBand;
 use crate::band::{self, BandSettings, InsideBlocks, LeafBatch, LeafMask, SignField};
 use crate::candidates::{BlockLists, CandidateLists};
 use crate::distance::SignedDistance;
-use crate::edge::{NearTriangles, NodeTriangles};
+use crate::edge::{NearTriangles, NodeTriangles, PartTriangles};
 use crate::error::Error;
 use crate::filter::FilterStatistics;
 use crate::lattice::Ijk;
@@ -69,7 +69,7 @@ pub(crate) fn store(
 struct Parts {
     origins: Vec<Ijk>,
     inside: Vec<LeafMask>,
-    closest: Vec<Vec<i32>>,
+    closest: Vec<PartTriangles>,
     lists: Vec<(Vec<Ijk>, BlockLists)>,
     blocks: InsideBlocks,
 }
@@ -115,10 +115,12 @@ impl Parts {
         self.origins.extend_from_slice(&batch.origins);
         if next == Next::Contour {
             self.inside.extend(batch.inside);
-            self.closest.push(batch.closest);
+            self.closest.push(PartTriangles::new(&batch.closest));
             // Leaves that were added where the sign jumps have no lists: edges there ask the hierarchy.
             if !batch.lists.is_empty() {
-                self.lists.push((batch.origins, batch.lists));
+                let mut lists = batch.lists;
+                lists.shrink_to_fit();
+                self.lists.push((batch.origins, lists));
             }
         }
     }

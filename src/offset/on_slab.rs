@@ -48,7 +48,8 @@ pub(super) fn on_slab(
         ContourSettings { slab, reach: Some(reach(distance, band_settings)), ..settings.contour(lattice) };
     let surface = OffsetSurface { distance, r, lists: lists.as_ref(), vanishing: 1e-4 * lattice.voxel };
     let contour = contour_slab(&signs, &crossings, lattice, Some(&surface), &contour_settings, run)?;
-    drop(crossings);
+    drop((crossings, lists));
+    let contour = run.install(|| contour.into_ordered());
     let triangles = contour.firsts.windows(2).map(|ends| ends[0]..ends[1]);
     let leaves = signs.leaves().map(|leaf| signs.origin(leaf)).zip(triangles);
     let lost = unseen::lost(suspects, &contour.mesh, leaves, STRAY, run)?;

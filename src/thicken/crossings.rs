@@ -205,9 +205,10 @@ impl<'a> LeafNodes<'a> {
     }
 
     fn node(&self, local: Ijk, p: DVec3) -> Sample {
-        let known = self.signs.locate(self.leaf, local.0).and_then(|(leaf, number)| {
-            self.nodes.of_leaf(leaf).and_then(|ids| u32::try_from(ids[number]).ok())
-        });
+        let known = self
+            .signs
+            .locate(self.leaf, local.0)
+            .and_then(|(leaf, number)| self.nodes.of_leaf(leaf)?.get(number));
         match known {
             Some(triangle) => self.solid.distance.from_triangle(p, triangle),
             None => self.solid.sample(p, 0),

@@ -5,7 +5,7 @@ use super::solid::{Place, Solid};
 use crate::band::{BandSettings, Below, LeafMask, SignField, build_below};
 use crate::candidates::CandidateLists;
 use crate::distance::SignedDistance;
-use crate::edge::NodeTriangles;
+use crate::edge::{NodeTriangles, PartTriangles};
 use crate::error::Error;
 use crate::lattice::{Ijk, LEAF_SIZE, Lattice};
 use crate::run::RunSettings;
@@ -92,7 +92,8 @@ impl Nodes {
                 Ok(signs) => signs,
                 Err(never) => match never {},
             };
-            let triangles = NodeTriangles::new(&signs, &self.origins, self.closest);
+            let parts = self.closest.into_par_iter().map(|part| PartTriangles::new(&part)).collect();
+            let triangles = NodeTriangles::new(&signs, &self.origins, parts);
             (signs, triangles)
         })
     }

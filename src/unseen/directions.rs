@@ -32,17 +32,9 @@ impl DirectionTable {
         1 << self.by_triangle[triangle as usize]
     }
 
-    /// The directions of triangles, with -1 for none.
-    pub(super) fn of_all(&self, triangles: &[i32]) -> Directions {
-        let (mut all, mut last) = (0, -1);
-        for &triangle in triangles {
-            // Neighbours mostly have the same.
-            if triangle != last && triangle >= 0 {
-                all |= self.of(triangle as u32);
-            }
-            last = triangle;
-        }
-        all
+    /// The directions of triangles.
+    pub(super) fn of_all(&self, triangles: &[u32]) -> Directions {
+        triangles.iter().fold(0, |all, &triangle| all | self.of(triangle))
     }
 
     /// Whether two directions of a set are at a right angle or more to each other.

@@ -83,7 +83,7 @@ pub fn suspects(
 ) -> Result<Suspects, Cancelled> {
     let directions = DirectionTable::new(distance.ssvh(), distance.mesh().triangles.len());
     let by_leaf = run.install(|| {
-        let of_leaf = |leaf| directions.of_all(near.nodes.of_leaf(leaf).unwrap_or_default());
+        let of_leaf = |leaf| near.nodes.of_leaf(leaf).map_or(0, |of| directions.of_all(of.known()));
         signs.leaves().collect::<Vec<_>>().into_par_iter().with_min_len(64).map(of_leaf).collect()
     });
     let search = Search { distance, r, lattice, signs, near, directions, by_leaf };
@@ -160,12 +160,12 @@ impl Search<'_> {
     /// The closest triangles of the nodes of a leaf and of the next ones along each axis, -1 where none is known, and their
     /// directions. `around` is the leaf and the next ones, z fastest.
     fn corners(&self, around: [Option<LeafId>; 8]) -> ([i32; NODES], [Directions; NODES]) {
-        let ids = around.map(|leaf| self.near.nodes.of_leaf(leaf?));
+        let ids = around.map(|leaf| Some(self.near.nodes.of_leaf(leaf?)?.by_node()));
         let (mut triangles, mut sets) = ([-1; NODES], [0; NODES]);
         for row in 0..SIDE * SIDE {
             let [x, y] = [row / SIDE, row % SIDE];
             let number = (x & 7) << 6 | (y & 7) << 3;
-            let [own, next] = [0, 1].map(|z| ids[x >> 3 << 2 | y >> 3 << 1 | z]);
+            let [own, next] = [0, 1].map(|z| ids[x >> 3 << 2 | y >> 3 << 1 | z].as_ref());
             let first = row * SIDE;
             if let Some(own) = own {
                 triangles[first..first + SIDE - 1].copy_from_slice(&own[number..number + SIDE - 1]);

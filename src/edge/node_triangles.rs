@@ -1,0 +1,155 @@
+//! The closest triangles of the band's nodes. One node of seven is in the band, so only those are kept, found by their ranks
+//! in bit masks.
+
+use super::bits;
+use crate::band::{LeafId, LeafMask, SignField};
+use crate::lattice::{Ijk, LEAF_SIZE};
+
+/// The slot of a leaf of the ring.
+const RING: [u32; 2] = [u32::MAX; 2];
+
+/// The closest triangles of the band's nodes, by leaf of a [`SignField`].
+#[derive(Clone, Debug, Default)]
+pub struct NodeTriangles {
+    /// Per leaf of the field its part and its place there, or `u32::MAX` twice for a leaf of the ring.
+    slots: Vec<[u32; 2]>,
+    /// As they were made: they are not moved together.
+    parts: Vec<PartTriangles>,
+}
+
+/// The closest triangles of the nodes of some leaves.
+#[derive(Clone, Debug, Default)]
+pub struct PartTriangles {
+    leaves: Vec<LeafSlot>,
+    /// Of the nodes in the masks, leaf by leaf.
+    ids: Vec<u32>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct LeafSlot {
+    /// Nodes whose triangle is known.
+    mask: LeafMask,
+    /// How many there are before each word of the mask.
+    before: [u16; 8],
+    /// Where the leaf's numbers begin.
+    first: usize,
+}
+
+impl PartTriangles {
+    /// From 512 numbers for each leaf, -1 where none is known.
+    ///
+    /// # Panics
+    /// When there are not 512 for each.
+    pub fn new(numbers: &[i32]) -> PartTriangles {
+        assert!(numbers.len().is_multiple_of(LEAF_SIZE), "512 triangle numbers per leaf");
+        let known = numbers.iter().filter(|&&n| n >= 0).count();
+        let mut part = PartTriangles {
+            leaves: Vec::with_capacity(numbers.len() / LEAF_SIZE),
+            ids: Vec::with_capacity(known),
+        };
+        for numbers in numbers.chunks_exact(LEAF_SIZE) {
+            let mut slot = LeafSlot { mask: [0; 8], before: [0; 8], first: part.ids.len() };
+            for (word, numbers) in numbers.chunks_exact(64).enumerate() {
+                slot.before[word] = (part.ids.len() - slot.first) as u16;
+                slot.mask[word] =
+                    numbers.iter().enumerate().fold(0, |mask, (bit, &n)| mask | u64::from(n >= 0) << bit);
+                part.ids.extend(numbers.iter().filter_map(|&n| u32::try_from(n).ok()));
+            }
+            part.leaves.push(slot);
+        }
+        part
+    }
+}
+
+impl NodeTriangles {
+    /// `parts` holds, one after the other, those of the leaves `origins`.
+    ///
+    /// # Panics
+    /// When the numbers of leaves differ.
+    pub fn new(signs: &SignField, origins: &[Ijk], parts: Vec<PartTriangles>) -> Self {
+        let places: Vec<[u32; 2]> = (0..)
+            .zip(&parts)
+            .flat_map(|(part, of)| (0..of.leaves.len() as u32).map(move |place| [part, place]))
+            .collect();
+        assert_eq!(places.len(), origins.len(), "triangle numbers for each leaf");
+        let mut order: Vec<u32> = (0..origins.len() as u32).collect();
+        order.sort_unstable_by_key(|&n| origins[n as usize]);
+        // Both lists are sorted by origin now.
+        let mut order = order.into_iter().peekable();
+        let slots = signs
+            .leaves()
+            .map(|leaf| {
+                let own = order.next_if(|&n| origins[n as usize] == signs.origin(leaf));
+                own.map_or(RING, |n| places[n as usize])
+            })
+            .collect();
+        NodeTriangles { slots, parts }
+    }
+
+    /// Those of a leaf's nodes; `None` for a leaf of the ring.
+    #[inline]
+    pub fn of_leaf(&self, leaf: LeafId) -> Option<LeafTriangles<'_>> {
+        // Without any parts, all triangles are unknown.
+        let [part, place] = *self.slots.get(leaf.0 as usize)?;
+        let PartTriangles { leaves, ids } = self.parts.get(part as usize)?;
+        let slot = &leaves[place as usize];
+        let end = leaves.get(place as usize + 1).map_or(ids.len(), |next| next.first);
+        Some(LeafTriangles { slot, ids: &ids[slot.first..end] })
+    }
+}
+
+/// The closest triangles of a leaf's nodes.
+#[derive(Clone, Copy, Debug)]
+pub struct LeafTriangles<'a> {
+    slot: &'a LeafSlot,
+    ids: &'a [u32],
+}
+
+impl<'a> LeafTriangles<'a> {
+    /// That of a node, if it is known.
+    #[inline]
+    pub fn get(&self, node: usize) -> Option<u32> {
+        let (word, bit) = (node >> 6, node & 63);
+        let mask = self.slot.mask[word];
+        (mask >> bit & 1 == 1).then(|| {
+            let below = (mask & ((1 << bit) - 1)).count_ones();
+            self.ids[usize::from(self.slot.before[word]) + below as usize]
+        })
+    }
+
+    /// All that are known, in the order of the nodes.
+    pub fn known(&self) -> &'a [u32] {
+        self.ids
+    }
+
+    /// One for each of the 512 nodes, -1 where none is known.
+    pub fn by_node(&self) -> [i32; LEAF_SIZE] {
+        let mut all = [-1; LEAF_SIZE];
+        for (node, &id) in bits(&self.slot.mask).zip(self.ids) {
+            all[node] = id as i32;
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_known_is_found_by_node() {
+        let number = |n: usize| if n * n % 7 < 3 { n as i32 } else { -1 };
+        let numbers: Vec<i32> =
+            (0..3 * LEAF_SIZE).map(|n| if n / LEAF_SIZE == 1 { -1 } else { number(n) }).collect();
+        let part = PartTriangles::new(&numbers);
+        let triangles = NodeTriangles { slots: vec![[0, 2], RING, [0, 0], [0, 1]], parts: vec![part] };
+        assert!(triangles.of_leaf(LeafId(1)).is_none() && triangles.of_leaf(LeafId(4)).is_none());
+        for (leaf, place) in [(0, 2), (2, 0), (3, 1)] {
+            let expected = &numbers[place * LEAF_SIZE..(place + 1) * LEAF_SIZE];
+            let found = triangles.of_leaf(LeafId(leaf)).unwrap();
+            assert_eq!(found.by_node(), expected);
+            assert!((0..LEAF_SIZE).all(|n| found.get(n) == u32::try_from(expected[n]).ok()));
+            assert_eq!(found.known().len(), expected.iter().filter(|&&n| n >= 0).count());
+        }
+    }
+}
