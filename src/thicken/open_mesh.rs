@@ -88,13 +88,13 @@ impl OpenMesh {
     /// Leaves out what would hang on a rim by one of these vertices alone.
     fn open_pinches(&mut self, mut at_rim: Vec<u32>) {
         while let Some(v) = at_rim.pop() {
-            let around = self.topology.around_vertex(v);
+            let around = self.topology.around_vertex(v).to_vec();
             let starts = |&&t: &&u32| {
                 let corners = self.mesh.triangles[t as usize];
                 Side::ALL.into_iter().any(|s| corners[s.index()] == v && self.is_rim(t, s))
             };
             if around.iter().filter(starts).count() > 1 {
-                for t in around.to_vec() {
+                for t in around {
                     if self.drop(t as usize) {
                         at_rim.extend(self.mesh.triangles[t as usize]);
                     }
