@@ -42,7 +42,7 @@ test: setup
 	cargo test --locked
 
 test-full: setup
-	EXOCARP_HEAVY=1 cargo test --release --locked
+	EXOCARP_HEAVY=1 cargo test --profile heavy --locked
 
 lint: setup
 	cargo fmt --check
