@@ -205,14 +205,21 @@ impl Editor<'_> {
     }
 
     /// Whether nothing is lost when a vertex is merged into another one at `place`: it is no corner, or the same one, or
-    /// another vertex is in its corner.
+    /// another vertex that stands for its corner is there.
     fn may_go(&self, vertex: u32, place: Point) -> bool {
         if !self.is_corner(vertex) {
             return true;
         }
         let same = SAME_CORNER * self.grid.voxel();
         self.features.get(vertex).is_some_and(|FeatureVertex { feature, .. }| {
-            distance2(feature.point, place) <= same * same || self.patch.is_taken(feature.point, same, vertex)
+            let is_same = |p: Point| distance2(feature.point, p) <= same * same;
+            let stands_for_it = |v: u32| {
+                v != vertex
+                    && self.is_corner(v)
+                    && self.features.get(v).is_some_and(|f| is_same(f.feature.point))
+            };
+            is_same(place)
+                || self.patch.vertices_near(feature.point, same).into_iter().any(|(v, _)| stands_for_it(v))
         })
     }
 
