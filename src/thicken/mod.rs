@@ -14,6 +14,7 @@ mod check;
 mod closed;
 mod crossings;
 mod curve;
+mod edge_search;
 mod embedding;
 mod fit;
 mod holes;

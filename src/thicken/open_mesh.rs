@@ -1,6 +1,7 @@
 //! The contour without the faces below the patch: an open mesh whose rims run along the boundary of S.
 
-use super::crossings::{Part, SolidCrossings};
+use super::crossings::SolidCrossings;
+use super::edge_search::Part;
 use crate::band::SignField;
 use crate::contour::{Precision, contour_by_edge};
 use crate::error::Error;

@@ -6,7 +6,7 @@
 //! the faces' own, smoothed in each round.
 
 use super::SectionNormals;
-use super::crossings::Part;
+use super::edge_search::Part;
 use super::embedding::Embedding;
 use super::solid::Solid;
 use crate::contour::Precision;
