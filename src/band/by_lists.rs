@@ -1,7 +1,7 @@
 //! A leaf by candidate lists: one walk of the hierarchy for all of it.
 
 use super::LeafBatch;
-use super::build::{Below, Worker};
+use super::build::Worker;
 use super::leaf::{Fate, Leaf};
 use crate::candidates::{BlockLists, EightPoints, Narrowing};
 use crate::filter::{Block, FilterStatistics};
@@ -17,6 +17,14 @@ struct Work<'a> {
     lists: &'a mut BlockLists,
     statistics: &'a mut FilterStatistics,
     leaf: Leaf,
+}
+
+/// What is known of nodes without a look at each.
+enum Known {
+    /// They are too far over the mesh to matter.
+    Above,
+    /// They are inside.
+    Inside,
 }
 
 impl Worker<'_> {
@@ -36,15 +44,13 @@ impl Worker<'_> {
         let q = ssvh.triangle(triangle).closest(block.centre(self.filter.lattice)).point;
         narrowing.start(ssvh, self.filter.lattice, block, q);
         statistics.lists[0] += narrowing.count(0) as u64;
-        if let Some(below) = &self.below {
-            let centre = [0.0; 3];
-            if self.is_above(below, 0, centre, block, narrowing) {
-                return;
-            }
-            if self.is_inside(below, 0, centre, block, distance.abs(), narrowing) {
+        match self.known_below(0, [0.0; 3], block, [distance.abs(); 2], narrowing) {
+            Some(Known::Above) => return,
+            Some(Known::Inside) => {
                 batch.inside_blocks.push((origin, LEAF_DIM));
                 return;
             }
+            None => {}
         }
         batch.lists.begin_leaf();
         let mut work = Work { narrowing, lists: &mut batch.lists, statistics, leaf: Leaf::new() };
@@ -101,18 +107,14 @@ impl Worker<'_> {
             let side = side.or_else(|| self.side_around(half, signed));
             work.narrowing.narrow(depth, n, half.side);
             work.statistics.lists[depth + 1] += work.narrowing.count(depth + 1) as u64;
-            if let Some(below) = &self.below {
-                let centre = centres.map(|c| c[n]);
-                if self.is_above(below, depth + 1, centre, half, work.narrowing) {
-                    continue;
-                }
-                // The distance but for its error: the band's ends need not be that exact.
-                if self.is_inside(below, depth + 1, centre, half, distance + error, work.narrowing)
-                    && self.is_inside(below, depth + 1, centre, half, distance - error, work.narrowing)
-                {
+            let range = [distance - error, distance + error];
+            match self.known_below(depth + 1, centres.map(|c| c[n]), half, range, work.narrowing) {
+                Some(Known::Above) => continue,
+                Some(Known::Inside) => {
                     work.leaf.fill(half, -self.settings.background());
                     continue;
                 }
+                None => {}
             }
             if half.side > 2 {
                 self.halves(depth + 1, half, side, work);
@@ -127,34 +129,28 @@ impl Worker<'_> {
         }
     }
 
-    /// Whether all nodes of a block are too far over the mesh to matter. The list of `depth` is the block's, and `centre` its centre
-    /// relative to the leaf's, in voxels.
-    fn is_above(
+    /// What is known of all nodes of a block by the list of `depth`, which is the block's, where only what is below the mesh is
+    /// wanted. `centre` is the block's centre relative to the leaf's, in voxels; the distance there is in `range`.
+    fn known_below(
         &self,
-        below: &Below<'_>,
         depth: usize,
         centre: [f32; 3],
         block: Block,
+        range: [f64; 2],
         narrowing: &Narrowing,
-    ) -> bool {
-        narrowing.is_above(depth, centre, block.side, (below.above / self.filter.lattice.voxel) as f32)
-    }
-
-    /// Whether all nodes of a block with the given distance at its centre are known to be inside.
-    fn is_inside(
-        &self,
-        below: &Below<'_>,
-        depth: usize,
-        centre: [f32; 3],
-        block: Block,
-        distance: f64,
-        narrowing: &Narrowing,
-    ) -> bool {
-        let radius = block.radius(self.filter.lattice);
-        let is_there = distance - radius > below.inside[0] && distance + radius < below.inside[1];
+    ) -> Option<Known> {
+        let below = self.below.as_ref()?;
+        let lattice = self.filter.lattice;
+        if narrowing.is_above(depth, centre, block.side, (below.above / lattice.voxel) as f32) {
+            return Some(Known::Above);
+        }
+        let radius = block.radius(lattice);
+        if range[0] - radius <= below.inside[0] || range[1] + radius >= below.inside[1] {
+            return None;
+        }
         let ssvh = self.filter.distance.ssvh();
         let at_boundary = |position: u32| below.at_boundary[ssvh.id_at(position) as usize];
-        is_there && narrowing.is_below(depth, centre, block.side, at_boundary)
+        narrowing.is_below(depth, centre, block.side, at_boundary).then_some(Known::Inside)
     }
 
     /// Evaluates the eight nodes of a block of side 2, which was narrowed to last as half number `n` with one of `centres`,
