@@ -43,7 +43,7 @@ impl EdgeNumbers {
         let ids: Vec<LeafId> = signs.leaves().collect();
         let masks = ids.into_par_iter().with_min_len(64);
         let masks = masks.map(|leaf| Axis::ALL.map(|axis| signs.crossed_edges(leaf, axis)));
-        Self::of_masks(masks.collect(), false)
+        Self::of_masks(masks, false)
     }
 
     /// Numbers some of the sign changes: of each leaf, the edges of these masks, by axis.
@@ -51,13 +51,14 @@ impl EdgeNumbers {
     /// # Errors
     /// When there are more than 2^32 - 1 of them.
     pub fn of_some(masks: Vec<[LeafMask; 3]>) -> Result<Self, TooManyEdges> {
-        Self::of_masks(masks, true)
+        Self::of_masks(masks.into_par_iter().with_min_len(64), true)
     }
 
-    fn of_masks(masks: Vec<[LeafMask; 3]>, is_open: bool) -> Result<Self, TooManyEdges> {
+    fn of_masks(
+        masks: impl IndexedParallelIterator<Item = [LeafMask; 3]>,
+        is_open: bool,
+    ) -> Result<Self, TooManyEdges> {
         let mut leaves: Vec<LeafEdges> = masks
-            .into_par_iter()
-            .with_min_len(64)
             .map(|masks| {
                 let mut before = [[0; 8]; 3];
                 let mut in_leaf = 0;
