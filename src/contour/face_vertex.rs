@@ -18,6 +18,7 @@ use super::cells::{Cells, split};
 use super::grid::Grid;
 use super::numbering::{CellId, CellNumbers, locate};
 use super::sheets::{Case, Pair};
+use super::vertex::is_missing;
 use super::{ContourError, TooManyVertices};
 use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, SignField};
 use crate::edge::{Crossings, bits};
@@ -132,8 +133,7 @@ fn in_leaf(cells: &Cells<'_>, vertices: &[[f64; 3]], leaf: LeafId, marks: &mut [
                     vertices[cells.vertex(cell, edge) as usize],
                     vertices[cells.vertex(next, next_edge) as usize],
                 ];
-                // Cells without all of their crossings have no vertices, and no triangles.
-                if ends.as_flattened().iter().any(|x| x.is_nan()) {
+                if ends.into_iter().any(is_missing) {
                     continue;
                 }
                 let ijk = signs.origin(leaf) + local;

@@ -71,7 +71,7 @@ impl LeafVertices {
             let case = table.case(id);
             if cells.crossings.numbers.is_open() && !placer.has_all_crossings(case, number) {
                 let vertices = &mut placer.vertices[first..first + case.sheets().len()];
-                vertices.fill([f64::NAN; 3]);
+                vertices.fill(vertex::MISSING);
                 first += case.sheets().len();
                 continue;
             }

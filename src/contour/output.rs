@@ -8,6 +8,7 @@ use super::order::VertexRun;
 use super::polygonize::{Cut, CutMethod, EDGE_VERTEX, Fit, polygonize};
 use super::rounds::{AXIS, LeafMesh};
 use super::slots::{Slots, Triangles};
+use super::vertex::is_missing;
 use super::{ContourError, ContourStatistics, TooManyVertices};
 use crate::band::LeafId;
 use crate::mesh::TriMesh;
@@ -143,7 +144,7 @@ fn in_leaf(
         leaf,
         |EdgePolygon { polygon, envelope, fit, piece, node, number, along }| {
             let size = sizes.next();
-            if is_open && polygon.corners().iter().any(|corner| corner.position[0].is_nan()) {
+            if is_open && polygon.corners().iter().any(|corner| is_missing(corner.position)) {
                 return;
             }
             triangles.clear();

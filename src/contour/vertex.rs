@@ -44,6 +44,18 @@ pub enum Placement {
     Clamped,
 }
 
+/// Stands for the position of a vertex that is not made: its cell lacks crossings ([`EdgeNumbers::is_open`]). Nothing of the
+/// cell gets into the mesh.
+///
+/// [`EdgeNumbers::is_open`]: crate::edge::EdgeNumbers::is_open
+pub const MISSING: [f64; 3] = [f64::NAN; 3];
+
+/// Whether a position is [`MISSING`].
+#[inline]
+pub fn is_missing(position: [f64; 3]) -> bool {
+    position[0].is_nan()
+}
+
 /// A vertex in its cell, and where it ought to be.
 #[derive(Clone, Copy, Debug)]
 pub struct Placed {
