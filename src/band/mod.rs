@@ -20,4 +20,4 @@ pub use inside::InsideBlocks;
 pub use jumps::leaves_at_jumps;
 pub use layers::{Layers, count_layers};
 pub use leaves::{LeafBatch, inside_mask};
-pub use signs::{LeafId, LeafMask, SignField};
+pub use signs::{LeafId, LeafMask, SignField, Z_FIRST, Z_LAST};

@@ -16,6 +16,11 @@ pub struct LeafId(pub u32);
 /// A 512-bit mask of a leaf's nodes: word x, bit 8 y + z.
 pub type LeafMask = [u64; 8];
 
+/// The bits with z = 0 in each row of a word of a [`LeafMask`].
+pub const Z_FIRST: u64 = 0x0101_0101_0101_0101;
+/// The bits with z = 7 in each row of a word of a [`LeafMask`].
+pub const Z_LAST: u64 = Z_FIRST << 7;
+
 /// Signs of the nodes of a set of leaves, with neighbours.
 #[derive(Clone, Debug, Default)]
 pub struct SignField {
@@ -166,11 +171,6 @@ impl SignField {
         }
     }
 }
-
-/// The bits with z = 0 in each row of eight.
-const Z_FIRST: u64 = 0x0101_0101_0101_0101;
-/// The bits with z = 7 in each row of eight.
-const Z_LAST: u64 = Z_FIRST << 7;
 
 #[cfg(test)]
 mod tests {

@@ -1,18 +1,17 @@
 //! What of a neighbouring leaf is beside a leaf.
 
-use crate::band::LeafMask;
+use crate::band::{LeafMask, Z_FIRST, Z_LAST};
 
 /// Of a neighbour's mask the bits beside a leaf: along each axis the last layer of a neighbour that lies before it (`delta`
 /// -1), the first one of a neighbour that follows it (1), and all of one that does neither (0).
 pub fn beside(mask: &LeafMask, [x, y, z]: [i32; 3]) -> LeafMask {
     const Y_FIRST: u64 = 0xff;
-    const Z_FIRST: u64 = 0x0101_0101_0101_0101;
     let layer = |delta: i32, first: u64, last: u64| match delta {
         -1 => last,
         0 => !0,
         _ => first,
     };
-    let rows = layer(y, Y_FIRST, Y_FIRST << 56) & layer(z, Z_FIRST, Z_FIRST << 7);
+    let rows = layer(y, Y_FIRST, Y_FIRST << 56) & layer(z, Z_FIRST, Z_LAST);
     let words = layer(x, 1, 1 << 7);
     std::array::from_fn(|n| if words >> n & 1 == 1 { mask[n] & rows } else { 0 })
 }

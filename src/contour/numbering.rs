@@ -5,7 +5,7 @@
 
 use super::sheets::{CaseId, CaseTable, FaceChoice};
 use super::{ContourError, TooManyVertices};
-use crate::band::{LeafId, LeafMask, SignField};
+use crate::band::{LeafId, LeafMask, SignField, Z_FIRST, Z_LAST};
 use crate::edge::bits;
 use crate::run::RunSettings;
 use rayon::prelude::*;
@@ -15,11 +15,6 @@ use rayon::prelude::*;
 pub struct CornerSigns {
     planes: [[u64; 4]; 9],
 }
-
-/// The bits with z = 0 in each row of eight.
-const Z_FIRST: u64 = 0x0101_0101_0101_0101;
-/// The bits with z = 7 in each row of eight.
-const Z_LAST: u64 = Z_FIRST << 7;
 
 impl CornerSigns {
     /// The corner signs of `leaf`; `None` when its cells are all of one sign. A neighbour that the field

@@ -1,6 +1,6 @@
 //! Nodes of the lattice that are near some others.
 
-use crate::band::{LeafId, LeafMask, SignField};
+use crate::band::{LeafId, LeafMask, SignField, Z_FIRST, Z_LAST};
 use crate::lattice::Axis;
 use rayon::prelude::*;
 
@@ -26,11 +26,6 @@ pub(super) fn near_nodes(signs: &SignField, mut masks: Vec<LeafMask>) -> Vec<Lea
     }
     masks
 }
-
-/// The bits with z = 0 in each row of eight.
-const Z_FIRST: u64 = 0x0101_0101_0101_0101;
-/// The bits with z = 7 in each row of eight.
-const Z_LAST: u64 = Z_FIRST << 7;
 
 /// The nodes of a leaf's mask, and those next to them and to the nodes of the leaves before and after it along an axis.
 fn widened(axis: Axis, before: LeafMask, own: LeafMask, after: LeafMask) -> LeafMask {
