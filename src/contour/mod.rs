@@ -241,7 +241,7 @@ pub fn contour_slab(
                 wishes.sort_by_key(|wish| (wish.vertex, wish.place.is_none()));
                 wishes.dedup_by_key(|wish| wish.vertex);
             }
-            let recovered = recover::recover(&cells, surface, wishes, &mut mesh, run)?;
+            let recovered = recover::recover(&cells, surface, &wishes, &mut mesh, run)?;
             statistics.recovered = recovered.moved;
             statistics.refused = recovered.refused;
             statistics.merged = recovered.merged;

@@ -69,36 +69,33 @@ pub const STAGES: [Stage; 3] = [Stage::Grant, Stage::Mend, Stage::Mend];
 pub fn recover(
     cells: &Cells<'_>,
     surface: &dyn Surface,
-    wishes: Vec<Vec<Wish>>,
+    wishes: &[Vec<Wish>],
     mesh: &mut LeafMesh,
     run: &RunSettings,
 ) -> Result<Recovered, Cancelled> {
     let mut recovered = Recovered::default();
     let (grid, features) = (&cells.grid, &cells.features);
-    // By leaf the wishes that something is left to do for, and how many were not granted.
-    let mut left = wishes;
-    let mut refused = vec![0; left.len()];
+    // By leaf how many wishes are not granted, and whether there is something left to do.
+    let mut open: Vec<(u64, bool)> = wishes.iter().map(|w| (0, !w.is_empty())).collect();
     for stage in STAGES {
-        let now = &left;
-        let mut next = Vec::new();
+        let (is_open, mut next) = (&open, open.clone());
         mesh.in_rounds(
             cells,
             run,
             |mesh, leaf| {
+                let wishes = &wishes[leaf.0 as usize];
                 let places = |w: &Wish| w.place.into_iter().chain([mesh.mesh.vertices[w.vertex as usize]]);
-                let mut wishes = now[leaf.0 as usize].iter().filter(|w| stage.is_for(w)).peekable();
-                wishes.peek().is_some().then(|| Bounds::around(wishes.flat_map(places)))
+                is_open[leaf.0 as usize].1.then(|| Bounds::around(wishes.iter().flat_map(places)))
             },
             |leaf, patch| {
                 let tolerance = TOLERANCE;
                 let mut editor =
                     Editor { patch, surface, grid, features, tolerance, trusting: true, piece: 0 };
-                let done = editor.grant_all(&now[leaf.0 as usize], stage);
+                let done = editor.grant_all(&wishes[leaf.0 as usize], stage);
                 (editor.patch, (leaf, done))
             },
-            |(leaf, (done, left))| {
-                refused[leaf.0 as usize] = done.refused;
-                next.push((leaf, left));
+            |(leaf, (done, is_open))| {
+                next[leaf.0 as usize] = (done.refused, is_open);
                 if !cells.owns(leaf) {
                     return;
                 }
@@ -108,59 +105,45 @@ pub fn recover(
                 recovered.split += done.split;
             },
         )?;
-        for (leaf, wishes) in next {
-            left[leaf.0 as usize] = wishes;
-        }
+        open = next;
     }
-    let owned = cells.signs.leaves().zip(&refused).filter(|(leaf, _)| cells.owns(*leaf));
-    recovered.refused = owned.map(|(_, refused)| refused).sum();
+    let owned = cells.signs.leaves().zip(&open).filter(|(leaf, _)| cells.owns(*leaf));
+    recovered.refused = owned.map(|(_, (refused, _))| refused).sum();
     Ok(recovered)
 }
 
-impl Stage {
-    /// Whether something is done for a wish. Vertices without a place of their own wait until the others are in theirs.
-    fn is_for(self, wish: &Wish) -> bool {
-        self == Stage::Mend || wish.place.is_some()
-    }
-}
-
 impl Editor<'_> {
-    /// What was done, and the wishes that something is left to do for.
-    fn grant_all(&mut self, wishes: &[Wish], stage: Stage) -> (Recovered, Vec<Wish>) {
+    /// What was done, and whether something is left to do.
+    fn grant_all(&mut self, wishes: &[Wish], stage: Stage) -> (Recovered, bool) {
         let mut recovered = Recovered::default();
-        let now: Vec<Wish> = wishes.iter().copied().filter(|wish| stage.is_for(wish)).collect();
-        let mut open = self.open(&now);
-        self.move_all(&now, &mut open, &mut recovered);
+        let mut open = self.open(wishes);
+        self.move_all(wishes, &mut open, &mut recovered);
         self.make_way(&mut open, &mut recovered);
-        let mut unsettled: Vec<u32> = Vec::with_capacity(now.len());
-        match stage {
-            Stage::Grant => {
-                let is_unsettled = |v: &u32| self.is_far_around(*v) || self.is_untidy(*v);
-                unsettled.extend(now.iter().map(|wish| wish.vertex).filter(is_unsettled));
+        if stage == Stage::Mend {
+            for (wish, place) in &open {
+                self.console(wish.vertex, *place);
             }
-            Stage::Mend => {
-                for (wish, place) in &open {
-                    self.console(wish.vertex, *place);
-                }
-                for wish in &now {
-                    let split = self.split_around(wish.vertex);
-                    recovered.split += split;
-                    unsettled.extend((split > 0).then_some(wish.vertex));
-                }
-                self.make_way(&mut open, &mut recovered);
-                for wish in &now {
-                    let merged = self.tidy_around(wish.vertex);
-                    if merged > 0 {
-                        recovered.merged += merged;
-                        recovered.flipped += self.flip_around(wish.vertex);
-                    }
+            for wish in wishes {
+                recovered.split += self.split_around(wish.vertex);
+            }
+            self.make_way(&mut open, &mut recovered);
+            for wish in wishes {
+                let merged = self.tidy_around(wish.vertex);
+                if merged > 0 {
+                    recovered.merged += merged;
+                    recovered.flipped += self.flip_around(wish.vertex);
                 }
             }
         }
         recovered.refused = open.len() as u64;
-        unsettled.extend(open.iter().map(|(wish, _)| wish.vertex));
-        let is_left = |wish: &&Wish| !stage.is_for(wish) || unsettled.contains(&wish.vertex);
-        (recovered, wishes.iter().filter(is_left).copied().collect())
+        let is_open = !open.is_empty()
+            || match stage {
+                Stage::Grant => {
+                    wishes.iter().any(|w| self.is_far_around(w.vertex) || self.is_untidy(w.vertex))
+                }
+                Stage::Mend => recovered.split > 0,
+            };
+        (recovered, is_open)
     }
 
     /// The vertices that are not where they belong, corners first, since creases can go around them.

@@ -22,9 +22,9 @@ const _: () =
     assert!(2.0 * MARGIN < LEAF_DIM as f64, "leaves of one round must not touch the same triangles");
 
 /// How far around the places where vertices are and go to a patch reaches, in voxels: as far as the triangles of a vertex
-/// whose neighbours are in their cells. Changes that need more are refused: of 4,228 vertices (armadillo +2% at 256) 4 as
-/// with 2.25 voxels, 17 with 1.75.
-const NEAR: f64 = 2.0;
+/// whose neighbours are in their cells, with a little for those that are not. Changes that need more are refused; with
+/// [`MARGIN`] four vertices of 1,460 more find room (armadillo +2% at 512), in patches of twice as many triangles.
+const NEAR: f64 = 2.25;
 
 /// How far a triangle may be changed to reach beyond the leaf that it belongs to, in voxels, by whichever leaf around
 /// it. The patch of a leaf is made of the triangles of this leaf and of its 26 neighbours: those of a leaf further
@@ -138,7 +138,7 @@ impl LeafMesh {
             if !around.meets(&bounds) {
                 continue;
             }
-            let nodes = [0, 1, 2].map(|axis| NodesNear::new(cells.signs.origin(leaf), axis, voxel, &bounds));
+            let nodes = NodesNear::new(cells.signs.origin(leaf), voxel, &bounds);
             found.clear();
             self.find(leaf, &nodes, &mut found);
             debug_assert!(
@@ -156,13 +156,13 @@ impl LeafMesh {
         patch
     }
 
-    /// Adds the numbers of the triangles of a leaf that may be where `nodes` tells, for the edges along each axis.
-    fn find(&self, leaf: LeafId, nodes: &[NodesNear; 3], found: &mut Vec<usize>) {
+    /// Adds the numbers of the triangles of a leaf that may be where `nodes` tells.
+    fn find(&self, leaf: LeafId, nodes: &NodesNear, found: &mut Vec<usize>) {
         let n = leaf.0 as usize;
         let first = self.ranges[n];
         let own = &self.edges[first..self.ranges[n + 1]];
         let mut rest = 0;
-        for (axis, nodes) in (0..).zip(nodes) {
+        for axis in 0..3 {
             let before = |end: u16| own[rest..].partition_point(|&e| e & !CHANGED < AXIS * axis + end);
             let (from, to) = (rest + before(nodes.first), rest + before(nodes.end));
             found.extend((from..to).filter(|&t| nodes.may_have(own[t])).map(|t| first + t));
@@ -214,7 +214,7 @@ impl LeafMesh {
     }
 }
 
-/// The nodes of a leaf whose grid edges along an axis may have triangles in a box. Looking at a node is far cheaper than at the corners
+/// The nodes of a leaf whose grid edges may have triangles in a box. Looking at a node is far cheaper than at the corners
 /// of its triangles, which lie anywhere in memory.
 struct NodesNear {
     /// The first node that is in question: the first of those with its x.
@@ -227,15 +227,14 @@ struct NodesNear {
 
 impl NodesNear {
     /// Of the leaf at `origin`.
-    fn new(origin: Ijk, axis: usize, voxel: f64, bounds: &Bounds) -> NodesNear {
-        // The triangles around an edge lie in the cells around it: from its lower node on to the next one, and a voxel to
-        // either side across, but for the rounding of coordinates, an eighth of a voxel at most.
-        const ROUNDING: f64 = 0.25;
+    fn new(origin: Ijk, voxel: f64, bounds: &Bounds) -> NodesNear {
+        // The triangles around an edge lie in the cells around it: within a voxel of its lower node along each axis, but
+        // for the rounding of coordinates, an eighth of a voxel at most.
+        const WITHIN: f64 = 1.25;
         let [x, y, z] = std::array::from_fn(|a| {
             let local = |x: f64| x / voxel - f64::from(origin.0[a]);
-            let before = if a == axis { 0.0 } else { 1.0 };
-            let low = (local(bounds.lo[a]) - 1.0 - ROUNDING).ceil().max(0.0) as i32;
-            let high = (local(bounds.hi[a]) + before + ROUNDING).floor().min(f64::from(LEAF_DIM - 1)) as i32;
+            let low = (local(bounds.lo[a]) - WITHIN).ceil().max(0.0) as i32;
+            let high = (local(bounds.hi[a]) + WITHIN).floor().min(f64::from(LEAF_DIM - 1)) as i32;
             low..high + 1
         });
         let yz =
