@@ -80,7 +80,7 @@ impl Worker<'_> {
                 centre[n] = (node & (LEAF_DIM - 1)) as f32 + middle - CENTRE;
             }
         }
-        work.narrowing.measure(depth, &centres);
+        work.narrowing.measure(depth, &centres, halves[0].side);
         // Where signs differ, they are those of the exact closest triangles.
         let exact = side.is_none().then(|| {
             let points = halves.map(|half| half.centre(lattice));
@@ -105,7 +105,7 @@ impl Worker<'_> {
             }
             work.statistics.octree_queries_valid += 1;
             let side = side.or_else(|| self.side_around(half, signed));
-            work.narrowing.narrow(depth, n, half.side);
+            work.narrowing.narrow(depth, n);
             work.statistics.lists[depth + 1] += work.narrowing.count(depth + 1) as u64;
             let range = [distance - error, distance + error];
             match self.known_below(depth + 1, centres.map(|c| c[n]), half, range, work.narrowing) {

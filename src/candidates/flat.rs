@@ -13,78 +13,111 @@ pub type EightPoints = [[f32; 8]; 3];
 /// small could lose the closest one.
 pub(super) const ROUNDING: f32 = 64.0 / 16_777_216.0;
 
-/// A triangle relative to a nearby centre, in voxels.
+/// A triangle relative to a nearby centre, in voxels: a frame of unit vectors for each edge, in which distances need no
+/// closest points.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FlatTriangle {
-    corners: [[f32; 3]; 3],
-    /// From each corner to the next.
-    edges: [[f32; 3]; 3],
-    /// One over the squared lengths of the edges; zero for an edge without length.
-    inverse: [f32; 3],
-    /// In the triangle's plane, perpendicular to each edge, outward; zero for a needle.
-    outward: [[f32; 3]; 3],
-    /// Unit normal; zero for a needle.
+    sides: [FlatSide; 3],
+    /// Unit normal.
     normal: [f32; 3],
+    /// The centre's height over the plane.
+    height: f32,
+}
+
+/// An edge of a triangle.
+#[derive(Clone, Copy, Debug)]
+struct FlatSide {
+    along: [f32; 3],
+    /// How far along the centre is, from the edge's first corner.
+    position: f32,
+    length: f32,
+    /// In the triangle's plane, perpendicular to the edge.
+    outward: [f32; 3],
+    /// How far outward the centre is, from the edge.
+    outside: f32,
+}
+
+impl FlatSide {
+    fn new(start: DVec3, along: DVec3, length: f64, outward: DVec3) -> FlatSide {
+        FlatSide {
+            along: flat(along),
+            position: -start.dot(along) as f32,
+            length: length as f32,
+            outward: flat(outward),
+            outside: -start.dot(outward) as f32,
+        }
+    }
 }
 
 impl FlatTriangle {
-    /// The triangle seen from `centre`, `scale` voxels to a model unit.
-    pub fn new(triangle: &Triangle, centre: DVec3, scale: f64) -> FlatTriangle {
-        let flat = |v: DVec3| v.as_vec3().to_array();
+    /// The triangle seen from `centre`, `scale` voxels to a model unit, and the largest coordinate of its corners.
+    pub fn new(triangle: &Triangle, centre: DVec3, scale: f64) -> (FlatTriangle, f32) {
+        let corners = triangle.corners.map(|c| (c - centre) * scale);
+        let size = corners.iter().fold(0.0, |size: f64, c| size.max(c.abs().max_element())) as f32;
         let edges = Side::ALL.map(|side| triangle.edge(side) * scale);
-        FlatTriangle {
-            corners: triangle.corners.map(|c| flat((c - centre) * scale)),
-            edges: edges.map(flat),
-            inverse: edges.map(|e| {
-                let inverse = (1.0 / e.length_squared()) as f32;
-                if inverse.is_finite() { inverse } else { 0.0 }
-            }),
-            outward: edges.map(|e| flat(e.cross(triangle.normal))),
-            normal: flat(triangle.normal),
+        let lengths = edges.map(|edge| edge.length());
+        let normal = triangle.normal;
+        if normal == DVec3::ZERO {
+            return (FlatTriangle::needle(corners, edges, lengths), size);
         }
+        let sides = std::array::from_fn(|k| {
+            let along = edges[k] / lengths[k];
+            FlatSide::new(corners[k], along, lengths[k], along.cross(normal))
+        });
+        (FlatTriangle { sides, normal: flat(normal), height: -corners[0].dot(normal) as f32 }, size)
     }
 
-    /// The largest coordinate of its corners.
-    pub fn size(&self) -> f32 {
-        self.corners.as_flattened().iter().fold(0.0, |size, x| size.max(x.abs()))
+    /// A triangle without an interior: its longest edge, beyond which every point is, on one side or the other.
+    fn needle(corners: [DVec3; 3], edges: [DVec3; 3], lengths: [f64; 3]) -> FlatTriangle {
+        let longest = (0..3).fold(0, |longest, k| if lengths[k] > lengths[longest] { k } else { longest });
+        let (start, length) = (corners[longest], lengths[longest]);
+        let along = edges[longest].try_normalize().unwrap_or(DVec3::X);
+        let (normal, outward) = along.any_orthonormal_pair();
+        let side = |outward| FlatSide::new(start, along, length, outward);
+        let sides = [side(outward), side(-outward), side(outward)];
+        FlatTriangle { sides, normal: flat(normal), height: -start.dot(normal) as f32 }
     }
 
     /// Between which heights over the triangle's plane the box around `centre` with half-sides `half` is, but for rounding. Zero
-    /// is among them for a needle.
+    /// is among them for a needle, if it is near enough.
     pub fn heights(&self, centre: [f32; 3], half: f32) -> [f32; 2] {
         let sum = |f: &dyn Fn(usize) -> f32| f(0) + f(1) + f(2);
-        let middle = sum(&|i| self.normal[i] * (centre[i] - self.corners[0][i]));
+        let middle = self.height + sum(&|i| self.normal[i] * centre[i]);
         let radius = half * sum(&|i| self.normal[i].abs());
         [middle - radius, middle + radius]
     }
 
-    /// The distances of the points in `p`, and the unit vectors to them from their closest points. All regions are
-    /// computed and the right one is selected, so that the lanes run side by side.
+    /// The distances of the points in `p`, one over them, and the unit vectors to the points from their closest points. All
+    /// regions are computed and the right one is selected, so that the lanes run side by side.
     #[inline(always)]
-    pub fn distances<S: Simd>(&self, simd: S, p: P32s<S>) -> (F32s<S>, P32s<S>) {
+    pub fn distances<S: Simd>(&self, simd: S, p: P32s<S>) -> (F32s<S>, F32s<S>, P32s<S>) {
         let (zero, one) = (F32s::splat(simd, 0.0), F32s::splat(simd, 1.0));
         let tiny = F32s::splat(simd, f32::MIN_POSITIVE);
         let mut squared = F32s::splat(simd, f32::INFINITY);
         let mut outermost = F32s::splat(simd, f32::NEG_INFINITY);
-        let mut from = P32s::splat(simd, [0.0; 3]);
-        for k in 0..3 {
-            let edge = P32s::splat(simd, self.edges[k]);
-            let at = p - P32s::splat(simd, self.corners[k]);
-            let along = (at.dot(edge) * F32s::splat(simd, self.inverse[k])).max(zero).min(one);
-            let outside = at.dot(P32s::splat(simd, self.outward[k]));
+        let mut beside = P32s::splat(simd, [0.0; 3]);
+        for side in &self.sides {
+            let (along, outward) = (P32s::splat(simd, side.along), P32s::splat(simd, side.outward));
+            let position = along.dot_plus(p, F32s::splat(simd, side.position));
+            let outside = outward.dot_plus(p, F32s::splat(simd, side.outside));
             outermost = outermost.max(outside);
-            let at = at - edge.times(along);
-            let length = at.dot(at);
-            let nearer = zero.at_most(outside) & length.less(squared);
-            squared = nearer.select(length, squared);
-            from = nearer.select_points(at, from);
+            let beyond = position - position.max(zero).min(F32s::splat(simd, side.length));
+            let square = beyond.times_plus(beyond, outside * outside);
+            let nearer = zero.at_most(outside) & square.less(squared);
+            squared = nearer.select(square, squared);
+            beside = nearer.select_points(along.times_plus(beyond, outward.times(outside)), beside);
         }
         let normal = P32s::splat(simd, self.normal);
-        let height = (p - P32s::splat(simd, self.corners[0])).dot(normal);
-        let above = outermost.less(zero);
-        let distance = above.select(height * height, squared).sqrt();
-        let from = above.select_points(normal.times(height), from);
+        let height = normal.dot_plus(p, F32s::splat(simd, self.height));
+        let squared = outermost.less(zero).select(zero, squared);
+        let distance = height.times_plus(height, squared).sqrt();
+        let from = normal.times_plus(height, beside);
         // Zero has no direction; whoever reads it there must not depend on it.
-        (distance, from.times(one / distance.max(tiny)))
+        let inverse = one / distance.max(tiny);
+        (distance, inverse, from.times(inverse))
     }
+}
+
+fn flat(v: DVec3) -> [f32; 3] {
+    v.as_vec3().to_array()
 }

@@ -35,15 +35,31 @@ pub struct Narrowing {
     passing: Vec<Passing>,
 }
 
-/// A block's candidates and what its eight halves' centres say of them.
+/// A block's candidates and what its eight halves' centres say of them. Of the vectors as much counts as there are
+/// candidates; what is behind is left from longer lists.
 #[derive(Debug, Default)]
 struct Level {
+    count: usize,
     /// Numbers in `flats`.
     list: Vec<u32>,
-    /// Their bounds around the centre of the block itself, where it was narrowed to.
+    /// Their bounds around the centre of the block itself, where it is of the last level.
     planes: Vec<PlaneBound>,
     bounds: Vec<Bound>,
+    /// Per candidate the halves that it matters to, a bit each.
+    matters: Vec<u8>,
     nearest: [Nearest; 8],
+    /// Those of the block that this one is a half of which are candidates here.
+    kept: Vec<u32>,
+}
+
+impl Level {
+    fn list(&self) -> &[u32] {
+        &self.list[..self.count]
+    }
+
+    fn planes(&self) -> &[PlaneBound] {
+        &self.planes[..self.count]
+    }
 }
 
 /// How near a triangle comes to the points around eight centres: at c + x at least `low` + `direction` . x, since it lies
@@ -76,22 +92,30 @@ impl Narrowing {
         ssvh.collect(&corners, &limits, &mut self.positions);
         self.voxel = lattice.voxel;
         let scale = 1.0 / lattice.voxel;
+        let mut largest = leaf.side as f32;
         self.flats.clear();
-        self.flats
-            .extend(self.positions.iter().map(|&p| FlatTriangle::new(ssvh.triangle_at(p), centre, scale)));
-        let size = self.flats.iter().fold(leaf.side as f32, |size, t| size.max(t.size()));
-        self.slack = ROUNDING * size;
-        let list = &mut self.levels[0].list;
+        self.flats.extend(self.positions.iter().map(|&p| {
+            let (flat, size) = FlatTriangle::new(ssvh.triangle_at(p), centre, scale);
+            largest = largest.max(size);
+            flat
+        }));
+        self.slack = ROUNDING * largest;
+        let Level { list, count, .. } = &mut self.levels[0];
         list.clear();
         list.extend(0..self.positions.len() as u32);
+        *count = list.len();
     }
 
     /// Measures the list of `depth` from the centres of the eight halves of its block, given relative to the leaf's
-    /// centre in voxels.
-    pub fn measure(&mut self, depth: usize, centres: &EightPoints) {
-        let Level { list, bounds, nearest, .. } = &mut self.levels[depth];
-        let measure = Measure { flats: &self.flats, list, centres, slack: self.slack, bounds };
-        *nearest = in_lanes(measure);
+    /// centre in voxels: which candidates matter to which half, for all points from the half's first node to one voxel
+    /// beyond its last along each axis. The halves have `side` nodes along an axis.
+    pub fn measure(&mut self, depth: usize, centres: &EightPoints, side: i32) {
+        let Level { count, list, bounds, matters, nearest, .. } = &mut self.levels[depth];
+        let list = &list[..*count];
+        let bounds = at_least(bounds, *count);
+        *nearest = in_lanes(Measure { flats: &self.flats, list, centres, slack: self.slack, bounds });
+        let matters = at_least(matters, *count);
+        in_lanes(Reach { bounds, nearest, ends: ends(side), slack: self.slack, matters });
     }
 
     /// What [`measure`](Self::measure) found nearest to the centre of half number `n`.
@@ -99,12 +123,27 @@ impl Narrowing {
         self.levels[depth].nearest[n]
     }
 
-    /// Narrows the measured list of `depth` to half number `n`, which has `side` nodes along an axis: the list of
-    /// `depth` + 1, for all points from the half's first node to one voxel beyond its last along each axis.
-    pub fn narrow(&mut self, depth: usize, n: usize, side: i32) {
+    /// Narrows the measured list of `depth` to half number `n`: the list of `depth` + 1.
+    pub fn narrow(&mut self, depth: usize, n: usize) {
         let [.., parent, child] = &mut self.levels[..depth + 2] else { unreachable!("two levels") };
-        let corners = corners(side);
-        in_lanes(Narrow { parent, n, corners: &corners, slack: self.slack, child });
+        // Every candidate is written, and the next one over it where it does not matter: no branch to guess wrong.
+        let kept = at_least(&mut child.kept, parent.count);
+        let mut count = 0;
+        for (row, matters) in (0..).zip(&parent.matters[..parent.count]) {
+            kept[count] = row;
+            count += usize::from(matters >> n & 1);
+        }
+        child.count = count;
+        let kept = &kept[..count];
+        for (number, &row) in at_least(&mut child.list, count).iter_mut().zip(kept) {
+            *number = parent.list[row as usize];
+        }
+        if depth + 2 == LEVELS {
+            for (plane, &row) in at_least(&mut child.planes, count).iter_mut().zip(kept) {
+                let Bound { low, direction: [x, y, z] } = &parent.bounds[row as usize];
+                *plane = PlaneBound { low: low[n], direction: [x[n], y[n], z[n]] };
+            }
+        }
     }
 
     /// Whether all nodes of a block of `side` nodes along an axis, whose centre is given relative to the leaf's in voxels, are
@@ -112,7 +151,7 @@ impl Narrowing {
     pub fn is_above(&self, depth: usize, centre: [f32; 3], side: i32, above: f32) -> bool {
         let half = 0.5 * (side - 1) as f32;
         let least = above + self.slack;
-        let list = &self.levels[depth].list;
+        let list = self.levels[depth].list();
         list.iter().all(|&n| self.flats[n as usize].heights(centre, half)[0] > least)
     }
 
@@ -125,7 +164,7 @@ impl Narrowing {
         is_excepted: impl Fn(u32) -> bool,
     ) -> bool {
         let half = 0.5 * (side - 1) as f32;
-        self.levels[depth].list.iter().all(|&n| {
+        self.levels[depth].list().iter().all(|&n| {
             let n = n as usize;
             self.flats[n].heights(centre, half)[1] < -self.slack && !is_excepted(self.positions[n])
         })
@@ -133,14 +172,14 @@ impl Narrowing {
 
     /// The number of triangles in the list of `depth`.
     pub fn count(&self, depth: usize) -> usize {
-        self.levels[depth].list.len()
+        self.levels[depth].count
     }
 
     /// The list of the block of 2^3 nodes that was narrowed to last: positions in the hierarchy, and bounds around the
     /// block's centre.
     pub fn bounded(&self) -> (impl ExactSizeIterator<Item = u32> + '_, &[PlaneBound]) {
-        let Level { list, planes, .. } = &self.levels[LEVELS - 1];
-        (list.iter().map(|&n| self.positions[n as usize]), planes)
+        let level = &self.levels[LEVELS - 1];
+        (level.list().iter().map(|&n| self.positions[n as usize]), level.planes())
     }
 
     /// The closest triangles to the nodes of the block of 2^3 nodes that was narrowed to last, as [`Ssvh::closest`] finds
@@ -155,7 +194,7 @@ impl Narrowing {
         points: &[DVec3; 8],
         wanted: [f32; 2],
     ) -> [Hit; 8] {
-        let [.., parent, Level { list, planes, .. }] = &self.levels;
+        let [.., parent, block] = &self.levels;
         let mut nodes = NODES;
         for (nodes, centres) in nodes.iter_mut().zip(centres) {
             *nodes = nodes.map(|x| x + centres[n]);
@@ -163,8 +202,8 @@ impl Narrowing {
         in_lanes(Nodes {
             flats: &self.flats,
             positions: &self.positions,
-            list,
-            planes,
+            list: block.list(),
+            planes: block.planes(),
             from: parent.nearest[n].from,
             around: &NODES,
             nodes: &nodes,
@@ -180,16 +219,30 @@ impl Narrowing {
 
     /// Positions in the hierarchy of the list of `depth`.
     pub fn list(&mut self, depth: usize) -> &[u32] {
-        let list = self.levels[depth].list.iter();
+        let list = self.levels[depth].list().iter();
         self.named.clear();
         self.named.extend(list.map(|&n| self.positions[n as usize]));
         &self.named
     }
 }
 
-/// The corners of the box of `side` nodes along an axis and the cells at them, in voxels from the centre of the nodes.
+/// The first `count` elements, which the vector has afterwards. They may hold anything.
+fn at_least<T: Clone + Default>(all: &mut Vec<T>, count: usize) -> &mut [T] {
+    if all.len() < count {
+        all.resize(count, T::default());
+    }
+    &mut all[..count]
+}
+
+/// Where the box of `side` nodes along an axis and the cells at them begins and ends, in voxels from the centre of the
+/// nodes.
+fn ends(side: i32) -> [f32; 2] {
+    [0.5 * (1 - side) as f32, 0.5 * (1 + side) as f32]
+}
+
+/// The corners of that box, z fastest.
 fn corners(side: i32) -> EightPoints {
-    let ends = [0.5 * (1 - side) as f32, 0.5 * (1 + side) as f32];
+    let ends = ends(side);
     std::array::from_fn(|axis| std::array::from_fn(|n| ends[n >> (2 - axis) & 1]))
 }
 
@@ -205,7 +258,7 @@ struct Measure<'a> {
     list: &'a [u32],
     centres: &'a EightPoints,
     slack: f32,
-    bounds: &'a mut Vec<Bound>,
+    bounds: &'a mut [Bound],
 }
 
 impl WithSimd for Measure<'_> {
@@ -214,8 +267,6 @@ impl WithSimd for Measure<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [Nearest; 8] {
         let Measure { flats, list, centres, slack, bounds } = self;
-        bounds.clear();
-        bounds.resize(list.len(), Bound::default());
         let (mut least, mut from) = ([0.0; 8], [[0.0; 8]; 3]);
         let slacks = F32s::splat(simd, slack);
         let unknown = F32s::splat(simd, slack * REACH);
@@ -224,12 +275,12 @@ impl WithSimd for Measure<'_> {
             let mut nearest = F32s::splat(simd, f32::INFINITY);
             let mut way = P32s::splat(simd, [0.0; 3]);
             for (bound, &n) in bounds.iter_mut().zip(list) {
-                let (distance, direction) = flats[n as usize].distances(simd, p);
+                let (distance, inverse, direction) = flats[n as usize].distances(simd, p);
                 let nearer = distance.less(nearest);
                 nearest = nearer.select(distance, nearest);
                 way = nearer.select_points(direction, way);
                 // The nearer the triangle, the less its direction is known.
-                (distance - slacks - unknown / distance).store(&mut bound.low, vector);
+                (distance - slacks - unknown * inverse).store(&mut bound.low, vector);
                 direction.store(&mut bound.direction, vector);
             }
             nearest.store(&mut least, vector);
@@ -243,47 +294,55 @@ impl WithSimd for Measure<'_> {
     }
 }
 
-/// What of a measured list matters to half number `n` with the given corners.
-struct Narrow<'a> {
-    parent: &'a Level,
-    n: usize,
-    corners: &'a EightPoints,
+/// Which of the measured triangles matter to which half: those that come nearer to one of its corners than the point that
+/// is nearest to its centre. The halves reach from the first to the second of `ends` around their centres.
+struct Reach<'a> {
+    bounds: &'a [Bound],
+    nearest: &'a [Nearest; 8],
+    ends: [f32; 2],
     slack: f32,
-    child: &'a mut Level,
+    matters: &'a mut [u8],
 }
 
-impl WithSimd for Narrow<'_> {
+impl WithSimd for Reach<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Narrow { parent, n, corners, slack, child: Level { list, planes, .. } } = self;
-        // How far the corners are from the point that is nearest to the centre.
-        let from = P32s::splat(simd, parent.nearest[n].from);
-        let mut limits = [0.0; 8];
-        for vector in 0..8 / F32s::<S>::COUNT {
-            let from = P32s::load(simd, corners, vector) + from;
-            (from.dot(from).sqrt() + F32s::splat(simd, slack)).store(&mut limits, vector);
-        }
-        // Every candidate is written, and the next one over it where it does not matter: no branch to guess wrong.
-        let count = parent.list.len();
-        list.resize(count, 0);
-        planes.resize(count, PlaneBound { low: 0.0, direction: [0.0; 3] });
-        let mut kept = 0;
-        for (bound, &candidate) in parent.bounds.iter().zip(&parent.list) {
-            let low = bound.low[n];
-            let direction = [bound.direction[0][n], bound.direction[1][n], bound.direction[2][n]];
-            list[kept] = candidate;
-            planes[kept] = PlaneBound { low, direction };
-            let (low, direction) = (F32s::splat(simd, low), P32s::splat(simd, direction));
-            let mut matters = false;
-            for vector in 0..8 / F32s::<S>::COUNT {
-                let at_corners = low + direction.dot(P32s::load(simd, corners, vector));
-                matters |= at_corners.less(F32s::load(simd, &limits, vector)).any();
+        let Reach { bounds, nearest, ends, slack, matters } = self;
+        // How far each corner is from that point, halves side by side.
+        let mut limits = [[[[0.0; 8]; 2]; 2]; 2];
+        for (x, limits) in limits.iter_mut().enumerate() {
+            for (y, limits) in limits.iter_mut().enumerate() {
+                for (z, limits) in limits.iter_mut().enumerate() {
+                    for (limit, nearest) in limits.iter_mut().zip(nearest) {
+                        let [a, b, c] = nearest.from;
+                        let [a, b, c] = [a + ends[x], b + ends[y], c + ends[z]];
+                        *limit = (a * a + b * b + c * c).sqrt() + slack;
+                    }
+                }
             }
-            kept += usize::from(matters);
         }
-        list.truncate(kept);
-        planes.truncate(kept);
+        let [low_end, high_end] = ends.map(|end| F32s::splat(simd, end));
+        for (bound, matters) in bounds.iter().zip(matters) {
+            let mut bits = 0;
+            for vector in 0..8 / F32s::<S>::COUNT {
+                let P32s { x, y, z } = P32s::load(simd, &bound.direction, vector);
+                let low = F32s::load(simd, &bound.low, vector);
+                let mut near = low.less(low);
+                for (limits, x_end) in limits.iter().zip([low_end, high_end]) {
+                    let at = x.times_plus(x_end, low);
+                    for (limits, y_end) in limits.iter().zip([low_end, high_end]) {
+                        let at = y.times_plus(y_end, at);
+                        for (limits, z_end) in limits.iter().zip([low_end, high_end]) {
+                            let at = z.times_plus(z_end, at);
+                            near = near | at.less(F32s::load(simd, limits, vector));
+                        }
+                    }
+                }
+                bits |= near.bits(vector);
+            }
+            *matters = bits;
+        }
     }
 }

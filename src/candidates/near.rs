@@ -2,12 +2,13 @@
 
 use crate::geom::lanes::{F32s, F64s, P32s, in_lanes};
 use crate::ssvh::{Hit, NearestOfEight, Ssvh};
-use glam::{DVec3, Vec3};
+use glam::DVec3;
+use multiversion::multiversion;
 use pulp::{Simd, WithSimd};
 
 /// How near a triangle comes to the points around the centre of a block's nodes: at c + x at least `low` + `direction` . x,
 /// since it lies beyond the plane through its closest point. In voxels.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct PlaneBound {
     /// At the centre.
     pub low: f32,
@@ -40,6 +41,9 @@ const LOSS: f32 = FARTHEST * 0.5 / DIRECTIONS + 1e-4;
 
 /// What a distance is multiplied with, so that it is not below the exact one after a few roundings.
 const ROUNDED: f32 = 1.0 + 4.0 * f32::EPSILON;
+
+/// Entries whose bounds are computed together: most lists are shorter.
+const TOGETHER: usize = 128;
 
 /// No bound is below this: distances are not negative, and the direction adds at most the length of a diagonal.
 const LOWEST: f32 = -FARTHEST;
@@ -96,20 +100,34 @@ impl Candidates<'_> {
     /// When `ssvh` is not the hierarchy that the list was taken from.
     pub fn closest(&self, ssvh: &Ssvh, p: DVec3) -> Hit {
         let scale = 1.0 / self.voxel;
-        let x = ((p - self.centre) * scale).as_vec3();
-        // The first one is the nearest to the centre.
-        let mut best = ssvh.hit(self.entries[0].position, p);
-        let limit = |hit: &Hit| ((hit.distance_squared.sqrt() * scale) as f32).next_up() + LOSS - self.base;
-        let mut most = limit(&best);
-        for &entry in &self.entries[1..] {
-            let bound = entry.low(0.0) + Vec3::from(entry.direction()).dot(x);
-            if bound > most {
-                continue;
-            }
-            let hit = ssvh.hit(entry.position, p);
-            if hit.before(&best) {
-                best = hit;
-                most = limit(&best);
+        let x = ((p - self.centre) * scale).as_vec3().to_array();
+        // No triangle has this number, so a real one comes before it.
+        let mut best = Hit { triangle: u32::MAX, distance_squared: f64::INFINITY };
+        let mut most = f32::INFINITY;
+        for entries in self.entries.chunks(TOGETHER) {
+            let mut bounds = [0.0; TOGETHER];
+            let bounds = &mut bounds[..entries.len()];
+            let least = bounds_at(entries, x, bounds);
+            // The one with the least bound is nearest most of the time; after it few others matter.
+            let first = bounds.iter().position(|&bound| bound == least).unwrap_or(0);
+            bounds.swap(0, first);
+            for (n, &bound) in bounds.iter().enumerate() {
+                if bound > most {
+                    continue;
+                }
+                let entry = entries[if n == 0 {
+                    first
+                } else if n == first {
+                    0
+                } else {
+                    n
+                }];
+                let hit = ssvh.hit(entry.position, p);
+                if hit.before(&best) {
+                    best = hit;
+                    let distance = ((best.distance_squared.sqrt() * scale) as f32).next_up();
+                    most = distance + LOSS - self.base;
+                }
             }
         }
         best
@@ -142,6 +160,16 @@ impl Candidates<'_> {
     }
 }
 
+/// The bounds of some entries at `x`, above the base of their list, and the least of them.
+#[multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt+popcnt"))]
+fn bounds_at(entries: &[Entry], x: [f32; 3], bounds: &mut [f32]) -> f32 {
+    for (bound, &entry) in bounds.iter_mut().zip(entries) {
+        let direction = entry.direction();
+        *bound = entry.low(0.0) + (direction[0] * x[0] + direction[1] * x[1] + direction[2] * x[2]);
+    }
+    bounds.iter().fold(f32::INFINITY, |least, &bound| if bound < least { bound } else { least })
+}
+
 struct ClosestToEight<'a> {
     candidates: &'a Candidates<'a>,
     ssvh: &'a Ssvh,
@@ -168,7 +196,7 @@ impl WithSimd for ClosestToEight<'_> {
             let (low, direction) = (F32s::splat(simd, entry.low(0.0)), P32s::splat(simd, entry.direction()));
             let mut matters = false;
             for vector in 0..count.div_ceil(F32s::<S>::COUNT) {
-                let bound = low + direction.dot(P32s::load(simd, near, vector));
+                let bound = direction.dot_plus(P32s::load(simd, near, vector), low);
                 matters |= bound.at_most(F32s::load(simd, &limits, vector)).any();
             }
             if !matters {

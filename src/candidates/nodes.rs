@@ -59,14 +59,16 @@ impl WithSimd for Nodes<'_> {
             let is_nearer = limit.less(F32s::splat(simd, least));
             is_nearer.select(nobody, limit).store(&mut limits, vector);
         }
-        passing.resize(list.len(), Passing::default());
+        if passing.len() < list.len() {
+            passing.resize(list.len(), Passing::default());
+        }
         let mut count = 0;
         for (&number, plane) in list.iter().zip(planes) {
             passing[count].number = number;
             let (low, direction) = (F32s::splat(simd, plane.low), P32s::splat(simd, plane.direction));
             let mut matters = false;
             for vector in 0..8 / F32s::<S>::COUNT {
-                let bound = low + direction.dot(P32s::load(simd, around, vector));
+                let bound = direction.dot_plus(P32s::load(simd, around, vector), low);
                 matters |= bound.at_most(F32s::load(simd, &limits, vector)).any();
             }
             count += usize::from(matters);
@@ -75,7 +77,7 @@ impl WithSimd for Nodes<'_> {
         for Passing { number, distances } in passing.iter_mut() {
             let flat = &flats[*number as usize];
             for vector in 0..8 / F32s::<S>::COUNT {
-                let (distance, _) = flat.distances(simd, P32s::load(simd, nodes, vector));
+                let (distance, _, _) = flat.distances(simd, P32s::load(simd, nodes, vector));
                 distance.store(distances, vector);
                 F32s::load(simd, &limits, vector).min(distance + slacks).store(&mut limits, vector);
                 F32s::load(simd, &found, vector).min(distance).store(&mut found, vector);

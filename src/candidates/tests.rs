@@ -42,17 +42,17 @@ fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]
         };
         std::array::from_fn(|axis| halves.map(|half| centre(half, axis)))
     };
-    narrowing.measure(0, &centres(leaf));
+    narrowing.measure(0, &centres(leaf), 4);
     for (n, half) in leaf.children().into_iter().enumerate() {
-        narrowing.narrow(0, n, 4);
+        narrowing.narrow(0, n);
         check(&mut narrowing, 1, half);
-        narrowing.measure(1, &centres(half));
+        narrowing.measure(1, &centres(half), 2);
         for (n, quarter) in half.children().into_iter().enumerate() {
             let distance = f64::from(narrowing.nearest(1, n).distance) * lattice.voxel;
             let exact = ssvh.closest(quarter.centre(lattice)).distance_squared.sqrt();
             let error = f64::from(narrowing.nearest(1, n).error) * lattice.voxel;
             assert!((distance - exact).abs() <= error, "{distance} {exact} {error}");
-            narrowing.narrow(1, n, 2);
+            narrowing.narrow(1, n);
             check(&mut narrowing, 2, quarter);
             check_nodes(&mut narrowing, n, &centres(half), &ssvh, lattice, quarter);
             let mut lists = BlockLists::default();

@@ -2,7 +2,8 @@
 //!
 //! [`in_lanes`] runs a kernel with the widest instructions that the machine has of those that the program was built for,
 //! picked at run time. Every lane takes the same operations in the same order as a number would, none fused, so the
-//! results do not depend on the machine. Kernels must not use closures, which would not be compiled for those
+//! results do not depend on the machine; but for f32 and the operations that say so, which are for bounds only: what is
+//! within their rounding is decided in f64. Kernels must not use closures, which would not be compiled for those
 //! instructions.
 
 use pulp::{Arch, Simd, WithSimd};
@@ -279,7 +280,41 @@ macro_rules! points {
 points!(P32s, F32s, f32);
 points!(P64s, F64s, f64);
 
+impl<S: Simd> F32s<S> {
+    /// The numbers times others, and more. May be fused: see the module.
+    #[inline(always)]
+    pub fn times_plus(self, factors: Self, more: Self) -> Self {
+        F32s(self.0, self.0.mul_add_e_f32s(self.1, factors.1, more.1))
+    }
+}
+
+impl<S: Simd> P32s<S> {
+    /// The scalar products, and more. May be fused: see the module.
+    #[inline(always)]
+    pub fn dot_plus(self, other: Self, more: F32s<S>) -> F32s<S> {
+        self.x.times_plus(other.x, self.y.times_plus(other.y, self.z.times_plus(other.z, more)))
+    }
+
+    /// The vectors times numbers, and more. May be fused: see the module.
+    #[inline(always)]
+    pub fn times_plus(self, factors: F32s<S>, more: Self) -> Self {
+        P32s {
+            x: self.x.times_plus(factors, more.x),
+            y: self.y.times_plus(factors, more.y),
+            z: self.z.times_plus(factors, more.z),
+        }
+    }
+}
+
 impl<S: Simd> M32s<S> {
+    /// Of the vectors that eight numbers fill, a bit for each lane in which it holds.
+    #[inline(always)]
+    pub fn bits(self, vector: usize) -> u8 {
+        const BITS: [f32; 8] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0];
+        let bits = self.select(F32s::load(self.0, &BITS, vector), F32s::splat(self.0, 0.0));
+        self.0.reduce_sum_f32s(bits.1) as u8
+    }
+
     /// Of two sets of points those that the mask says.
     #[inline(always)]
     pub fn select_points(self, yes: P32s<S>, no: P32s<S>) -> P32s<S> {
