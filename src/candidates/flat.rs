@@ -1,8 +1,8 @@
 //! A triangle in f32, to bound distances of eight points at a time.
 
 use crate::geom::lanes::{F32s, P32s};
-use crate::geom::triangle::{Side, Triangle};
-use glam::DVec3;
+use crate::geom::triangle::Triangle;
+use glam::{DVec3, Vec3};
 use pulp::Simd;
 
 /// Eight points as structure of arrays.
@@ -38,13 +38,13 @@ struct FlatSide {
 }
 
 impl FlatSide {
-    fn new(start: DVec3, along: DVec3, length: f64, outward: DVec3) -> FlatSide {
+    fn new(start: Vec3, along: Vec3, length: f32, outward: Vec3) -> FlatSide {
         FlatSide {
-            along: flat(along),
-            position: -start.dot(along) as f32,
-            length: length as f32,
-            outward: flat(outward),
-            outside: -start.dot(outward) as f32,
+            along: along.to_array(),
+            position: -start.dot(along),
+            length,
+            outward: outward.to_array(),
+            outside: -start.dot(outward),
         }
     }
 }
@@ -52,30 +52,33 @@ impl FlatSide {
 impl FlatTriangle {
     /// The triangle seen from `centre`, `scale` voxels to a model unit, and the largest coordinate of its corners.
     pub fn new(triangle: &Triangle, centre: DVec3, scale: f64) -> (FlatTriangle, f32) {
-        let corners = triangle.corners.map(|c| (c - centre) * scale);
-        let size = corners.iter().fold(0.0, |size: f64, c| size.max(c.abs().max_element())) as f32;
-        let edges = Side::ALL.map(|side| triangle.edge(side) * scale);
-        let lengths = edges.map(|edge| edge.length());
-        let normal = triangle.normal;
-        if normal == DVec3::ZERO {
-            return (FlatTriangle::needle(corners, edges, lengths), size);
+        let exact = triangle.corners.map(|c| (c - centre) * scale);
+        let corners = exact.map(|c| c.as_vec3());
+        let size = corners.iter().fold(0.0, |size: f32, c| size.max(c.abs().max_element()));
+        // Differences of rounded corners would not have the direction of a short edge.
+        let edges = [exact[1] - exact[0], exact[2] - exact[1], exact[0] - exact[2]].map(|e| e.as_vec3());
+        let squared = edges.map(|edge| edge.length_squared());
+        let normal = triangle.normal.as_vec3();
+        if normal == Vec3::ZERO || squared.iter().any(|&x| x < f32::MIN_POSITIVE) {
+            return (FlatTriangle::needle(corners, edges, squared), size);
         }
         let sides = std::array::from_fn(|k| {
-            let along = edges[k] / lengths[k];
-            FlatSide::new(corners[k], along, lengths[k], along.cross(normal))
+            let length = squared[k].sqrt();
+            let along = edges[k] * (1.0 / length);
+            FlatSide::new(corners[k], along, length, along.cross(normal))
         });
-        (FlatTriangle { sides, normal: flat(normal), height: -corners[0].dot(normal) as f32 }, size)
+        (FlatTriangle { sides, normal: normal.to_array(), height: -corners[0].dot(normal) }, size)
     }
 
     /// A triangle without an interior: its longest edge, beyond which every point is, on one side or the other.
-    fn needle(corners: [DVec3; 3], edges: [DVec3; 3], lengths: [f64; 3]) -> FlatTriangle {
-        let longest = (0..3).fold(0, |longest, k| if lengths[k] > lengths[longest] { k } else { longest });
-        let (start, length) = (corners[longest], lengths[longest]);
-        let along = edges[longest].try_normalize().unwrap_or(DVec3::X);
+    fn needle(corners: [Vec3; 3], edges: [Vec3; 3], squared: [f32; 3]) -> FlatTriangle {
+        let longest = (0..3).fold(0, |longest, k| if squared[k] > squared[longest] { k } else { longest });
+        let (start, length) = (corners[longest], squared[longest].sqrt());
+        let along = edges[longest].try_normalize().unwrap_or(Vec3::X);
         let (normal, outward) = along.any_orthonormal_pair();
         let side = |outward| FlatSide::new(start, along, length, outward);
         let sides = [side(outward), side(-outward), side(outward)];
-        FlatTriangle { sides, normal: flat(normal), height: -start.dot(normal) as f32 }
+        FlatTriangle { sides, normal: normal.to_array(), height: -start.dot(normal) }
     }
 
     /// Between which heights over the triangle's plane the box around `centre` with half-sides `half` is, but for rounding. Zero
@@ -116,8 +119,4 @@ impl FlatTriangle {
         let inverse = one / distance.max(tiny);
         (distance, inverse, from.times(inverse))
     }
-}
-
-fn flat(v: DVec3) -> [f32; 3] {
-    v.as_vec3().to_array()
 }

@@ -1,7 +1,7 @@
 //! The lists of all blocks of 2^3 nodes that the offset surface may pass, by leaf.
 
 use super::LeafIndex;
-use super::near::{Candidates, Entry, PlaneBound, base};
+use super::near::{Candidates, PlaneBound, base, packed};
 use crate::filter::Block;
 use crate::lattice::{Ijk, Lattice};
 
@@ -20,7 +20,10 @@ pub struct BlockLists {
     ends: Vec<usize>,
     /// Per block what the bounds of its list are above.
     bases: Vec<f32>,
-    entries: Vec<Entry>,
+    /// Per candidate its position in the hierarchy.
+    positions: Vec<u32>,
+    /// And its bound, packed.
+    packed: Vec<u32>,
 }
 
 /// The blocks of a leaf that have a list.
@@ -30,6 +33,13 @@ struct Leaf {
     mask: u64,
     /// The number of the first one's list.
     first: usize,
+}
+
+/// The list of a block.
+struct List<'a> {
+    positions: &'a [u32],
+    packed: &'a [u32],
+    base: f32,
 }
 
 impl BlockLists {
@@ -43,7 +53,8 @@ impl BlockLists {
         self.leaves.shrink_to_fit();
         self.ends.shrink_to_fit();
         self.bases.shrink_to_fit();
-        self.entries.shrink_to_fit();
+        self.positions.shrink_to_fit();
+        self.packed.shrink_to_fit();
     }
 
     /// Begins the next leaf.
@@ -59,7 +70,9 @@ impl BlockLists {
         let leaf = self.leaves.pop().expect("a leaf was begun");
         self.ends.truncate(leaf.first);
         self.bases.truncate(leaf.first);
-        self.entries.truncate(self.ends.last().copied().unwrap_or(0));
+        let end = self.ends.last().copied().unwrap_or(0);
+        self.positions.truncate(end);
+        self.packed.truncate(end);
     }
 
     /// Adds the list of the block at `origin` to the last leaf that was begun: positions of triangles in the hierarchy, and
@@ -78,33 +91,28 @@ impl BlockLists {
         assert!(leaf.mask >> number == 0, "blocks come by ascending number");
         leaf.mask |= 1 << number;
         let base = base(bounds);
-        let first = self.entries.len();
-        self.entries
-            .extend(positions.zip(bounds).map(|(position, &bound)| Entry::new(position, bound, base)));
-        // The nearest to the centre comes first: it is asked before all others.
-        let mut nearest = 0;
-        for (n, bound) in bounds.iter().enumerate() {
-            nearest = if bound.low < bounds[nearest].low { n } else { nearest };
-        }
-        self.entries.swap(first, first + nearest);
+        self.positions.extend(positions);
+        self.packed.extend(bounds.iter().map(|&bound| packed(bound, base)));
+        assert_eq!(self.positions.len(), self.packed.len(), "a bound for each position");
         self.bases.push(base);
-        self.ends.push(self.entries.len());
-    }
-
-    fn numbered(&self, list: usize) -> (&[Entry], f32) {
-        let start = list.checked_sub(1).map_or(0, |before| self.ends[before]);
-        (&self.entries[start..self.ends[list]], self.bases[list])
+        self.ends.push(self.positions.len());
     }
 
     #[inline]
-    fn list(&self, leaf: usize, node: Ijk) -> Option<(&[Entry], f32)> {
+    fn list(&self, leaf: usize, node: Ijk) -> Option<List<'_>> {
         let Leaf { mask, first } = *self.leaves.get(leaf)?;
         let bit = 1u64 << block_in_leaf(node);
         if mask & bit == 0 {
             return None;
         }
         let list = first + (mask & (bit - 1)).count_ones() as usize;
-        Some(self.numbered(list))
+        let start = list.checked_sub(1).map_or(0, |before| self.ends[before]);
+        let range = start..self.ends[list];
+        Some(List {
+            positions: &self.positions[range.clone()],
+            packed: &self.packed[range],
+            base: self.bases[list],
+        })
     }
 }
 
@@ -141,9 +149,15 @@ impl CandidateLists {
     #[inline]
     pub fn of_cell(&self, node: Ijk) -> Option<Candidates<'_>> {
         let (part, leaf) = self.places[self.index.get(node)?];
-        let (entries, base) = self.parts[part as usize].list(leaf as usize, node)?;
+        let List { positions, packed, base } = self.parts[part as usize].list(leaf as usize, node)?;
         let block = Block { origin: Ijk(node.0.map(|x| x & !1)), side: 2 };
-        Some(Candidates { entries, base, centre: block.centre(self.lattice), voxel: self.lattice.voxel })
+        Some(Candidates {
+            positions,
+            packed,
+            base,
+            centre: block.centre(self.lattice),
+            voxel: self.lattice.voxel,
+        })
     }
 
     /// The same for a point.

@@ -3,7 +3,6 @@
 use crate::geom::lanes::{F32s, F64s, P32s, in_lanes};
 use crate::ssvh::{Hit, NearestOfEight, Ssvh};
 use glam::DVec3;
-use multiversion::multiversion;
 use pulp::{Simd, WithSimd};
 
 /// How near a triangle comes to the points around the centre of a block's nodes: at c + x at least `low` + `direction` . x,
@@ -14,16 +13,6 @@ pub struct PlaneBound {
     pub low: f32,
     /// The unit vector from the triangle.
     pub direction: [f32; 3],
-}
-
-/// A triangle of a list.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Entry {
-    /// Its position in the hierarchy.
-    pub position: u32,
-    /// Its bound: 8 bits each for the direction in units of 1 / [`DIRECTIONS`], and for how far the bound at the centre
-    /// is above the base of its list in units of 1 / [`STEPS`].
-    packed: [u8; 4],
 }
 
 /// Steps of a direction's coordinates. As many as fit.
@@ -42,32 +31,20 @@ const LOSS: f32 = FARTHEST * 0.5 / DIRECTIONS + 1e-4;
 /// What a distance is multiplied with, so that it is not below the exact one after a few roundings.
 const ROUNDED: f32 = 1.0 + 4.0 * f32::EPSILON;
 
-/// Entries whose bounds are computed together: most lists are shorter.
-const TOGETHER: usize = 128;
+/// Candidates whose bounds are computed together: most lists are shorter.
+const TOGETHER: usize = 64;
 
 /// No bound is below this: distances are not negative, and the direction adds at most the length of a diagonal.
 const LOWEST: f32 = -FARTHEST;
 
-impl Entry {
-    /// `base` is at most the bound at the centre, as [`base`] gives it.
-    #[inline(always)]
-    pub fn new(position: u32, bound: PlaneBound, base: f32) -> Entry {
-        let [x, y, z] = bound.direction.map(|d| byte(d * DIRECTIONS + DIRECTIONS));
-        // Rounded to the nearest after half a step was taken off is rounded down.
-        let above = byte((bound.low.max(LOWEST) - base) * STEPS - 0.5);
-        Entry { position, packed: [x, y, z, above] }
-    }
-
-    #[inline(always)]
-    fn low(self, base: f32) -> f32 {
-        base + f32::from(self.packed[3]) * (1.0 / STEPS)
-    }
-
-    #[inline(always)]
-    fn direction(self) -> [f32; 3] {
-        let [x, y, z, _] = self.packed;
-        [x, y, z].map(|d| f32::from(d) * (1.0 / DIRECTIONS) - 1.0)
-    }
+/// A bound in 32 bits, from the lowest on: 8 for each coordinate of the direction in units of 1 / [`DIRECTIONS`], and 8 for
+/// how far the bound at the centre is above `base` in units of 1 / [`STEPS`]. `base` is at most that, as [`base`] gives it.
+#[inline(always)]
+pub(super) fn packed(bound: PlaneBound, base: f32) -> u32 {
+    let [x, y, z] = bound.direction.map(|d| byte(d * DIRECTIONS + DIRECTIONS));
+    // Rounded to the nearest after half a step was taken off is rounded down.
+    let above = byte((bound.low.max(LOWEST) - base) * STEPS - 0.5);
+    u32::from_le_bytes([x, y, z, above])
 }
 
 /// The nearest number in 0..=255. Next to 2^23 the last place of an f32 is one, so that adding it rounds: several times
@@ -86,7 +63,11 @@ pub(super) fn base(bounds: &[PlaneBound]) -> f32 {
 /// The triangles that can be closest to a point of a block or of the cells at its nodes.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidates<'a> {
-    pub(super) entries: &'a [Entry],
+    /// Their positions in the hierarchy.
+    pub(super) positions: &'a [u32],
+    /// Their bounds.
+    pub(super) packed: &'a [u32],
+    /// What the bounds are above.
     pub(super) base: f32,
     /// World position of the centre of the block's nodes.
     pub(super) centre: DVec3,
@@ -100,29 +81,28 @@ impl Candidates<'_> {
     /// When `ssvh` is not the hierarchy that the list was taken from.
     pub fn closest(&self, ssvh: &Ssvh, p: DVec3) -> Hit {
         let scale = 1.0 / self.voxel;
-        let x = ((p - self.centre) * scale).as_vec3().to_array();
+        let x = self.local(p);
         // No triangle has this number, so a real one comes before it.
         let mut best = Hit { triangle: u32::MAX, distance_squared: f64::INFINITY };
         let mut most = f32::INFINITY;
-        for entries in self.entries.chunks(TOGETHER) {
+        for (positions, packed) in self.positions.chunks(TOGETHER).zip(self.packed.chunks(TOGETHER)) {
             let mut bounds = [0.0; TOGETHER];
-            let bounds = &mut bounds[..entries.len()];
-            let least = bounds_at(entries, x, bounds);
+            let least = in_lanes(LeastBounds { packed, points: &[x], bounds: &mut bounds });
             // The one with the least bound is nearest most of the time; after it few others matter.
             let first = bounds.iter().position(|&bound| bound == least).unwrap_or(0);
             bounds.swap(0, first);
-            for (n, &bound) in bounds.iter().enumerate() {
+            for (n, &bound) in bounds[..positions.len()].iter().enumerate() {
                 if bound > most {
                     continue;
                 }
-                let entry = entries[if n == 0 {
+                let position = positions[if n == 0 {
                     first
                 } else if n == first {
                     0
                 } else {
                     n
                 }];
-                let hit = ssvh.hit(entry.position, p);
+                let hit = ssvh.hit(position, p);
                 if hit.before(&best) {
                     best = hit;
                     let distance = ((best.distance_squared.sqrt() * scale) as f32).next_up();
@@ -144,40 +124,90 @@ impl Candidates<'_> {
         expected: f64,
     ) -> [Hit; 8] {
         let exact = [points.map(|p| p.x), points.map(|p| p.y), points.map(|p| p.z)];
-        let scale = 1.0 / self.voxel;
-        let near = points.map(|p| ((p - self.centre) * scale).as_vec3());
-        let near = [near.map(|p| p.x), near.map(|p| p.y), near.map(|p| p.z)];
-        let mut limits = [((expected * scale) as f32).next_up(); 8];
-        // Those that nobody asks for look at nothing.
-        limits[count..].fill(f32::NEG_INFINITY);
-        let kernel = ClosestToEight { candidates: self, ssvh, exact: &exact, near: &near, count, limits };
-        let hits = in_lanes(kernel);
-        if hits[..count].iter().all(|hit| hit.distance_squared <= expected * expected) {
-            return hits;
+        let near = points.map(|p| self.local(p));
+        let most = ((expected / self.voxel) as f32).next_up() * ROUNDED + (LOSS - self.base);
+        let near = &near[..count];
+        let kernel = ClosestToEight { candidates: self, ssvh, exact: &exact, near, most };
+        let mut hits = in_lanes(kernel);
+        for (hit, &p) in hits.iter_mut().zip(points).take(count) {
+            if hit.distance_squared > expected * expected {
+                *hit = self.closest(ssvh, p);
+            }
         }
-        limits[..count].fill(f32::INFINITY);
-        in_lanes(ClosestToEight { candidates: self, ssvh, exact: &exact, near: &near, count, limits })
+        hits
+    }
+
+    /// A point in voxels from the centre.
+    #[inline(always)]
+    fn local(&self, p: DVec3) -> [f32; 3] {
+        ((p - self.centre) * (1.0 / self.voxel)).as_vec3().to_array()
     }
 }
 
-/// The bounds of some entries at `x`, above the base of their list, and the least of them.
-#[multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt+popcnt"))]
-fn bounds_at(entries: &[Entry], x: [f32; 3], bounds: &mut [f32]) -> f32 {
-    for (bound, &entry) in bounds.iter_mut().zip(entries) {
-        let direction = entry.direction();
-        *bound = entry.low(0.0) + (direction[0] * x[0] + direction[1] * x[1] + direction[2] * x[2]);
+/// The least bound of each candidate at some points, above the base of their list, and the least of all.
+struct LeastBounds<'a> {
+    packed: &'a [u32],
+    points: &'a [[f32; 3]],
+    /// Without meaning beyond the last candidate.
+    bounds: &'a mut [f32; TOGETHER],
+}
+
+impl WithSimd for LeastBounds<'_> {
+    type Output = f32;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> f32 {
+        let LeastBounds { packed, points, bounds } = self;
+        let (by_eight, rest) = packed.as_chunks();
+        let bounds = bounds.as_chunks_mut().0;
+        let mut least = F32s::splat(simd, f32::INFINITY);
+        for (packed, bounds) in by_eight.iter().zip(bounds.iter_mut()) {
+            least = least.min(least_of_eight(simd, packed, points, bounds));
+        }
+        if let Some(&last) = rest.last() {
+            let mut filled = [last; 8];
+            filled[..rest.len()].copy_from_slice(rest);
+            least = least.min(least_of_eight(simd, &filled, points, &mut bounds[by_eight.len()]));
+        }
+        least.least()
     }
-    bounds.iter().fold(f32::INFINITY, |least, &bound| if bound < least { bound } else { least })
+}
+
+#[inline(always)]
+fn least_of_eight<S: Simd>(
+    simd: S,
+    packed: &[u32; 8],
+    points: &[[f32; 3]],
+    bounds: &mut [f32; 8],
+) -> F32s<S> {
+    let (direction, step) = (F32s::splat(simd, 1.0 / DIRECTIONS), F32s::splat(simd, 1.0 / STEPS));
+    let minus_one = F32s::splat(simd, -1.0);
+    let mut all = F32s::splat(simd, f32::INFINITY);
+    for vector in 0..8 / F32s::<S>::COUNT {
+        let directions = P32s {
+            x: F32s::bytes(simd, packed, vector, 0).times_plus(direction, minus_one),
+            y: F32s::bytes(simd, packed, vector, 1).times_plus(direction, minus_one),
+            z: F32s::bytes(simd, packed, vector, 2).times_plus(direction, minus_one),
+        };
+        let low = F32s::bytes(simd, packed, vector, 3) * step;
+        let mut least = F32s::splat(simd, f32::INFINITY);
+        for &point in points {
+            least = least.min(directions.dot_plus(P32s::splat(simd, point), low));
+        }
+        least.store(bounds, vector);
+        all = all.min(least);
+    }
+    all
 }
 
 struct ClosestToEight<'a> {
     candidates: &'a Candidates<'a>,
     ssvh: &'a Ssvh,
     exact: &'a [[f64; 8]; 3],
-    near: &'a [[f32; 8]; 3],
-    count: usize,
-    /// In voxels.
-    limits: [f32; 8],
+    /// Those that count.
+    near: &'a [[f32; 3]],
+    /// Candidates with bounds above this do not matter.
+    most: f32,
 }
 
 impl WithSimd for ClosestToEight<'_> {
@@ -185,35 +215,21 @@ impl WithSimd for ClosestToEight<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [Hit; 8] {
-        let ClosestToEight { candidates, ssvh, exact, near, count, mut limits } = self;
-        let &Candidates { entries, base, voxel, .. } = candidates;
-        for limit in &mut limits {
-            *limit = *limit * ROUNDED + (LOSS - base);
-        }
+        let ClosestToEight { candidates, ssvh, exact, near, most } = self;
         let mut nearest = NearestOfEight::NONE;
-        let scale = 1.0 / (voxel * voxel);
-        for &entry in entries {
-            let (low, direction) = (F32s::splat(simd, entry.low(0.0)), P32s::splat(simd, entry.direction()));
-            let mut matters = false;
-            for vector in 0..count.div_ceil(F32s::<S>::COUNT) {
-                let bound = direction.dot_plus(P32s::load(simd, near, vector), low);
-                matters |= bound.at_most(F32s::load(simd, &limits, vector)).any();
-            }
-            if !matters {
-                continue;
-            }
-            let triangle = ssvh.triangle_at(entry.position).in_lanes(simd);
-            for vector in 0..count.div_ceil(F64s::<S>::COUNT) {
-                nearest.offer(simd, &triangle, ssvh.id_at(entry.position), exact, vector);
-            }
-            let mut scaled = [0.0; 8];
-            for (scaled, squared) in scaled.iter_mut().zip(&nearest.squared) {
-                *scaled = (squared * scale) as f32;
-            }
-            for vector in 0..count.div_ceil(F32s::<S>::COUNT) {
-                let distance = F32s::load(simd, &scaled, vector).sqrt();
-                let limit = distance * F32s::splat(simd, ROUNDED) + F32s::splat(simd, LOSS - base);
-                F32s::load(simd, &limits, vector).min(limit).store(&mut limits, vector);
+        let mut bounds = [0.0; TOGETHER];
+        for (positions, packed) in
+            candidates.positions.chunks(TOGETHER).zip(candidates.packed.chunks(TOGETHER))
+        {
+            LeastBounds { packed, points: near, bounds: &mut bounds }.with_simd(simd);
+            for (&position, &bound) in positions.iter().zip(&bounds) {
+                if bound > most {
+                    continue;
+                }
+                let triangle = ssvh.triangle_at(position).in_lanes(simd);
+                for vector in 0..near.len().div_ceil(F64s::<S>::COUNT) {
+                    nearest.offer(simd, &triangle, ssvh.id_at(position), exact, vector);
+                }
             }
         }
         nearest.hits()

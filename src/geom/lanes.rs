@@ -281,6 +281,23 @@ points!(P32s, F32s, f32);
 points!(P64s, F64s, f64);
 
 impl<S: Simd> F32s<S> {
+    /// One of the vectors that eight words fill: of each word byte number `n`, from the lowest on, as a number.
+    #[inline(always)]
+    pub fn bytes(simd: S, words: &[u32; 8], vector: usize, n: u32) -> Self {
+        let words = S::as_simd_u32s(words).0[vector];
+        let bytes = simd.wrapping_dyn_shr_u32s(words, simd.splat_u32s(8 * n));
+        let bytes = simd.and_u32s(bytes, simd.splat_u32s(0xff));
+        // The last place of 2^23 is one: with the byte in its lowest bits it is 2^23 and the byte.
+        let lifted = simd.or_u32s(bytes, simd.splat_u32s(8_388_608f32.to_bits()));
+        F32s(simd, simd.transmute_f32s_u32s(lifted)) - F32s::splat(simd, 8_388_608.0)
+    }
+
+    /// The least of the lanes.
+    #[inline(always)]
+    pub fn least(self) -> f32 {
+        self.0.reduce_min_f32s(self.1)
+    }
+
     /// The numbers times others, and more. May be fused: see the module.
     #[inline(always)]
     pub fn times_plus(self, factors: Self, more: Self) -> Self {
