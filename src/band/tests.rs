@@ -1,4 +1,5 @@
 use super::*;
+use crate::candidates::CandidateLists;
 use crate::distance::SignedDistance;
 use crate::filter::{BoxSide, FilterSettings, Switch};
 use crate::geom::aabb::Aabb;
@@ -220,6 +221,40 @@ fn the_band_does_not_depend_on_the_filters() {
                 assert!(counts.lists.iter().all(|&n| n > 0));
             }
         }
+    }
+}
+
+#[test]
+fn leaves_with_too_many_candidates_ask_the_hierarchy() {
+    let mesh = crate::mesh::shapes::cube(96);
+    let topology = Topology::new(&mesh);
+    let distance = SignedDistance::new(&mesh, &topology);
+    let run = RunSettings::with_threads(2).unwrap();
+    let size = Aabb::around(mesh.vertices.iter().map(|&v| DVec3::from(v))).size().x;
+    // All leaves, and some.
+    for (voxels, by_lists) in [(12.0, [false, true]), (32.0, [true, true])] {
+        let lattice = Lattice { voxel: size / voxels };
+        let settings = BandSettings { lattice, r: 0.1 * size, half_width: 1.0, slab: Slab::WHOLE };
+        let leaves = |candidates| {
+            let filters = FilterSettings { candidates, ..FilterSettings::default() };
+            let mut leaves = Vec::new();
+            let (mut with, mut without) = (0, 0);
+            build_filtered(&distance, &settings, &filters, &run, |batch| {
+                let lists = CandidateLists::new(lattice, [(batch.origins.clone(), batch.lists)]);
+                for &origin in &batch.origins {
+                    let mut nodes = (0..512).map(|n| Ijk::in_leaf(origin, n));
+                    let has_lists = nodes.any(|node| lists.of_cell(node).is_some());
+                    *(if has_lists { &mut with } else { &mut without }) += 1;
+                }
+                leaves.push((batch.origins, batch.values, batch.active, batch.closest));
+                Ok::<_, Cancelled>(())
+            })
+            .unwrap();
+            (leaves, [with > 0, without > 0])
+        };
+        let (found, kinds) = leaves(Switch::On);
+        assert_eq!(kinds, by_lists, "{voxels}");
+        assert!(found == leaves(Switch::Off).0, "{voxels}");
     }
 }
 

@@ -82,14 +82,18 @@ pub struct Nearest {
 }
 
 impl Narrowing {
-    /// Collects the candidates of a leaf from the hierarchy. `q` is a point of the mesh near the leaf.
-    pub fn start(&mut self, ssvh: &Ssvh, lattice: Lattice, leaf: Block, q: DVec3) {
+    /// Collects the candidates of a leaf from the hierarchy, and returns whether there are no more than `most`; otherwise
+    /// there are none to work with. `q` is a point of the mesh near the leaf.
+    pub fn start(&mut self, ssvh: &Ssvh, lattice: Lattice, leaf: Block, q: DVec3, most: usize) -> bool {
         let centre = leaf.centre(lattice);
         let [x, y, z] = corners(leaf.side).map(|lane| lane.map(f64::from));
         let corners = std::array::from_fn(|n| centre + lattice.voxel * DVec3::new(x[n], y[n], z[n]));
         let limits = corners.map(|c: DVec3| (c - q).length());
         self.positions.clear();
-        ssvh.collect(&corners, &limits, &mut self.positions);
+        ssvh.collect(&corners, &limits, most, &mut self.positions);
+        if self.positions.len() > most {
+            return false;
+        }
         self.voxel = lattice.voxel;
         let scale = 1.0 / lattice.voxel;
         let mut largest = leaf.side as f32;
@@ -104,6 +108,7 @@ impl Narrowing {
         list.clear();
         list.extend(0..self.positions.len() as u32);
         *count = list.len();
+        true
     }
 
     /// Measures the list of `depth` from the centres of the eight halves of its block, given relative to the leaf's

@@ -34,6 +34,10 @@ const ROUNDED: f32 = 1.0 + 4.0 * f32::EPSILON;
 /// Candidates whose bounds are computed together: most lists are shorter.
 const TOGETHER: usize = 64;
 
+/// In lists longer than this, what is nearest among the first is where the hierarchy starts from; at half this length both
+/// ways are as fast.
+const LONG: usize = 512;
+
 /// No bound is below this: distances are not negative, and the direction adds at most the length of a diagonal.
 const LOWEST: f32 = -FARTHEST;
 
@@ -108,6 +112,9 @@ impl Candidates<'_> {
                     let distance = ((best.distance_squared.sqrt() * scale) as f32).next_up();
                     most = distance + LOSS - self.base;
                 }
+            }
+            if self.positions.len() > LONG {
+                return ssvh.closest_from(p, best.triangle);
             }
         }
         best

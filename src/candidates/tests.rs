@@ -32,7 +32,7 @@ fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]
     let leaf = Block { origin, side: 8 };
     let q = ssvh.triangle(ssvh.closest(leaf.centre(lattice)).triangle).closest(leaf.centre(lattice)).point;
     let mut narrowing = Narrowing::default();
-    narrowing.start(&ssvh, lattice, leaf, q);
+    assert!(narrowing.start(&ssvh, lattice, leaf, q, usize::MAX));
     check(&mut narrowing, 0, leaf);
     let centres = |block: Block| {
         let halves = block.children();

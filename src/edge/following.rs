@@ -29,21 +29,22 @@ impl Solver<'_> {
         self.follow_from(edge, tried, statistics)
     }
 
-    /// The intersections of up to eight edges that have the candidates `near` in common, each as
-    /// [`follow`](Self::follow) finds it. What they try first is verified together.
+    /// The intersections of up to eight edges that are near each other, each as [`follow`](Self::follow) finds it. What they
+    /// try first is verified together, by the candidates that they have in common, if any.
     pub(super) fn follow_together(
         &self,
         edges: &[GridEdge],
-        near: &Candidates<'_>,
+        near: Option<Candidates<'_>>,
         statistics: &mut EdgeStatistics,
         roots: &mut [Root; 8],
     ) {
         let mut points = [DVec3::ZERO; 8];
         let mut positions = [None; 8];
-        let mut proposed = 0;
+        let (mut proposed, mut guess) = (0, 0);
         for (edge, position) in edges.iter().zip(&mut positions) {
-            if let Some(Proposal { t, .. }) = self.first(edge) {
+            if let Some(Proposal { t, triangle }) = self.first(edge) {
                 points[proposed] = self.at(edge, t);
+                guess = triangle;
                 *position = Some(t);
                 proposed += 1;
             }
@@ -55,7 +56,10 @@ impl Solver<'_> {
         let ssvh = self.distance.ssvh();
         // The triangle that was solved for is that near, and so is the closest one.
         let expected = self.r.abs() + TOLERANCE * self.voxel;
-        let hits = (proposed > 0).then(|| near.closest_to_eight(ssvh, &points, proposed, expected));
+        let hits = (proposed > 0).then(|| match near {
+            Some(near) => near.closest_to_eight(ssvh, &points, proposed, expected),
+            None => ssvh.closest_to_eight(&points, guess),
+        });
         let mut answers = points.iter().zip(hits.iter().flatten());
         for ((edge, position), root) in edges.iter().zip(positions).zip(roots) {
             let tried = position.and_then(|t| {

@@ -85,16 +85,7 @@ impl LeafSolver<'_> {
                     }),
                 );
                 let mut roots = [unsolved; 8];
-                match near {
-                    Some(near) => {
-                        self.solver.follow_together(&together, &near, statistics, &mut roots);
-                    }
-                    None => {
-                        for (edge, root) in together.iter().zip(&mut roots) {
-                            *root = self.solver.follow(edge, statistics);
-                        }
-                    }
-                }
+                self.solver.follow_together(&together, near, statistics, &mut roots);
                 for ((edge, root), &(axis, number)) in together.iter().zip(roots).zip(edges) {
                     let id = self.numbers.get(leaf.id, axis, number).expect("an intersected edge");
                     samples[(id.0 - first) as usize] = edge.crossing(root);

@@ -292,6 +292,12 @@ impl<S: Simd> F32s<S> {
         F32s(simd, simd.transmute_f32s_u32s(lifted)) - F32s::splat(simd, 8_388_608.0)
     }
 
+    /// Their sizes.
+    #[inline(always)]
+    pub fn abs(self) -> Self {
+        F32s(self.0, self.0.abs_f32s(self.1))
+    }
+
     /// The least of the lanes.
     #[inline(always)]
     pub fn least(self) -> f32 {

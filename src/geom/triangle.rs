@@ -127,37 +127,6 @@ impl<S: Simd> SideInLanes<S> {
     }
 }
 
-/// Eight points as structure of arrays.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Eight {
-    /// First coordinates.
-    pub x: [f64; 8],
-    /// Second coordinates.
-    pub y: [f64; 8],
-    /// Third coordinates.
-    pub z: [f64; 8],
-}
-
-impl Eight {
-    /// (p - origin) . direction for each point p.
-    #[inline(always)]
-    #[allow(clippy::needless_range_loop, reason = "a lane runs through several arrays in step")]
-    fn dots(&self, origin: DVec3, direction: DVec3) -> [f64; 8] {
-        let mut out = [0.0; 8];
-        for i in 0..8 {
-            let (x, y, z) = (self.x[i] - origin.x, self.y[i] - origin.y, self.z[i] - origin.z);
-            out[i] = x * direction.x + y * direction.y + z * direction.z;
-        }
-        out
-    }
-}
-
-impl From<&[DVec3; 8]> for Eight {
-    fn from(p: &[DVec3; 8]) -> Self {
-        Eight { x: p.map(|p| p.x), y: p.map(|p| p.y), z: p.map(|p| p.z) }
-    }
-}
-
 /// The closest point of a triangle to a query point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClosestPoint {
@@ -201,33 +170,6 @@ impl Triangle {
         best
     }
 
-    /// Squared distances from eight points, each the same value, bit for bit, as
-    /// [`distance_squared`](Self::distance_squared) gives: the same operations in the same order, all
-    /// regions computed and the right one selected, so that the lanes run side by side.
-    #[inline(always)]
-    #[allow(clippy::needless_range_loop, reason = "a lane runs through several arrays in step")]
-    pub fn distances_squared(&self, p: &Eight) -> [f64; 8] {
-        let mut nearest = [f64::INFINITY; 8];
-        // The largest of the three; negative inside all edges.
-        let mut outermost = [f64::NEG_INFINITY; 8];
-        for side in Side::ALL {
-            let k = side.index();
-            let outside = p.dots(self.corners[k], self.edge(side).cross(self.normal));
-            let squared = self.segment_distances(side, p);
-            for i in 0..8 {
-                let candidate = if outside[i] >= 0.0 { squared[i] } else { f64::INFINITY };
-                nearest[i] = if candidate < nearest[i] { candidate } else { nearest[i] };
-                outermost[i] = if outside[i] > outermost[i] { outside[i] } else { outermost[i] };
-            }
-        }
-        let height = p.dots(self.corners[0], self.normal);
-        let mut out = [0.0; 8];
-        for i in 0..8 {
-            out[i] = if outermost[i] < 0.0 { height[i] * height[i] } else { nearest[i] };
-        }
-        out
-    }
-
     /// The triangle with what does not depend on the point computed ahead.
     #[inline(always)]
     pub fn in_lanes<S: Simd>(&self, simd: S) -> TriangleInLanes<S> {
@@ -244,30 +186,6 @@ impl Triangle {
             corner: a,
             normal,
         }
-    }
-
-    /// Squared distances of eight points from an edge, as `segment` computes them for one.
-    #[inline(always)]
-    #[allow(clippy::needless_range_loop, reason = "a lane runs through several arrays in step")]
-    fn segment_distances(&self, side: Side, p: &Eight) -> [f64; 8] {
-        let (first, second) = self.ends(side);
-        let (a, b) = (self.corners[first.index()], self.corners[second.index()]);
-        let edge = b - a;
-        let length_squared = edge.length_squared();
-        let inverse = 1.0 / length_squared;
-        let along = p.dots(a, edge);
-        let mut squared = [0.0; 8];
-        for (p, a, b, edge) in [(&p.x, a.x, b.x, edge.x), (&p.y, a.y, b.y, edge.y), (&p.z, a.z, b.z, edge.z)]
-        {
-            for i in 0..8 {
-                let between = a + edge * (along[i] * inverse);
-                let point = if along[i] >= length_squared { b } else { between };
-                let point = if along[i] <= 0.0 { a } else { point };
-                let d = p[i] - point;
-                squared[i] += d * d;
-            }
-        }
-        squared
     }
 
     /// The ends of an edge, the one with the lower vertex number first.
@@ -440,17 +358,14 @@ mod tests {
             let mut points: [DVec3; 8] = std::array::from_fn(|_| 3.0 * point());
             points[0] = corners[1];
             points[1] = corners[0].midpoint(corners[2]);
-            let together = triangle.distances_squared(&Eight::from(&points));
-            for (p, d) in points.into_iter().zip(together) {
-                assert_eq!(d.to_bits(), triangle.distance_squared(p).to_bits(), "{p} {corners:?}");
-            }
             for p in points {
                 assert_eq!(triangle.feature(p), triangle.closest(p).feature, "{p} {corners:?}");
             }
+            let one_by_one = points.map(|p| triangle.distance_squared(p));
             let lanes = [points.map(|p| p.x), points.map(|p| p.y), points.map(|p| p.z)];
             let here = crate::geom::lanes::in_lanes(InLanes(&triangle, &lanes));
             let anywhere = pulp::WithSimd::with_simd(InLanes(&triangle, &lanes), pulp::Scalar);
-            assert_eq!(here.map(f64::to_bits), together.map(f64::to_bits), "{corners:?}");
+            assert_eq!(here.map(f64::to_bits), one_by_one.map(f64::to_bits), "{corners:?}");
             assert_eq!(here.map(f64::to_bits), anywhere.map(f64::to_bits), "{corners:?}");
         }
     }

@@ -1,19 +1,19 @@
 //! Lists of triangles: all that come near enough to one of eight points, and the closest of a list.
 
-use super::node::{Level, WIDTH};
-use super::query::{Hit, Stack};
+use super::node::Level;
+use super::query::{Around, Hit, Stack};
 use super::{NearestOfEight, Ssvh};
-use crate::geom::lanes::{F64s, in_lanes};
+use crate::geom::lanes::in_lanes;
 use crate::geom::triangle::Triangle;
 use glam::DVec3;
-use multiversion::multiversion;
 use pulp::{Simd, WithSimd};
 
 impl Ssvh {
     /// Appends to `found` the positions, in the hierarchy's order, of all triangles whose distance from one of the
-    /// points is at most that point's limit, and of some that are a little farther.
-    pub fn collect(&self, points: &[DVec3; 8], limits: &[f64; 8], found: &mut Vec<u32>) {
-        collect(self, points, limits, found);
+    /// points is at most that point's limit, and of some that are a little farther. Gives up when `found` holds more than
+    /// `most`.
+    pub fn collect(&self, points: &[DVec3; 8], limits: &[f64; 8], most: usize, found: &mut Vec<u32>) {
+        in_lanes(Collect { tree: self, points, limits, most, found });
     }
 
     /// The triangle at a position of the hierarchy's order.
@@ -63,43 +63,50 @@ impl WithSimd for ClosestToEight<'_> {
         let ClosestToEight { ssvh, positions, points } = self;
         let mut nearest = NearestOfEight::NONE;
         for &position in positions {
-            let triangle = ssvh.triangle_at(position).in_lanes(simd);
-            for vector in 0..8 / F64s::<S>::COUNT {
-                nearest.offer(simd, &triangle, ssvh.id_at(position), points, vector);
-            }
+            nearest.offer_to_all(simd, ssvh, position, points);
         }
         nearest.hits()
     }
 }
 
-#[multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt+popcnt"))]
-#[allow(clippy::needless_range_loop, reason = "a lane runs through several arrays in step")]
-fn collect(tree: &Ssvh, points: &[DVec3; 8], limits: &[f64; 8], found: &mut Vec<u32>) {
-    let lo = points.iter().copied().reduce(DVec3::min).expect("eight points");
-    let hi = points.iter().copied().reduce(DVec3::max).expect("eight points");
-    let centre = lo.midpoint(hi);
-    let radius = points.iter().map(|&p| (p - centre).length_squared()).fold(0.0, f64::max).sqrt();
-    let slack = tree.slack((centre - tree.centre).abs() + radius);
-    let limits = limits.map(|limit| ((limit + slack) as f32).next_up());
-    let limit = limits.iter().fold(0.0, |a: f32, &b| a.max(b)) + (radius as f32).next_up();
-    let relative = points.map(|p| (p - tree.centre).as_vec3());
-    let relative = [relative.map(|p| p.x), relative.map(|p| p.y), relative.map(|p| p.z)];
-    let q = (centre - tree.centre).as_vec3();
-    let mut stack = Stack::new();
-    while let Some(node) = stack.pop(tree, limit) {
-        let distances = node.distances(q);
-        let first = stack.waiting;
-        for slot in 0..WIDTH {
-            if distances[slot] > limit {
-                continue;
+/// All triangles that come near enough to one of eight points.
+struct Collect<'a> {
+    tree: &'a Ssvh,
+    points: &'a [DVec3; 8],
+    limits: &'a [f64; 8],
+    most: usize,
+    found: &'a mut Vec<u32>,
+}
+
+impl WithSimd for Collect<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Collect { tree, points, limits: exact, most, found } = self;
+        let Around { centre, radius, slack, relative, .. } = Around::new(tree, points);
+        let mut limits = [0.0; 8];
+        let mut limit = 0.0f32;
+        for (rounded, &exact) in limits.iter_mut().zip(exact) {
+            *rounded = ((exact + slack) as f32).next_up();
+            limit = limit.max(*rounded);
+        }
+        limit += radius;
+        let mut stack = Stack::new();
+        while let Some(node) = stack.pop(tree, limit) {
+            if found.len() > most {
+                return;
             }
-            let from_each = node.distances_from(slot, &relative);
-            if !(0..8).fold(false, |any, i| any | (from_each[i] <= limits[i])) {
-                continue;
-            }
-            match node.level {
-                Level::Inner => stack.push(first, distances[slot], node.children[slot]),
-                Level::Leaf => found.push(node.children[slot]),
+            let distances = node.distances(simd, centre);
+            let first = stack.waiting;
+            for (slot, &distance) in distances.iter().enumerate() {
+                if distance > limit || !node.is_near(simd, slot, &relative, &limits) {
+                    continue;
+                }
+                match node.level {
+                    Level::Inner => stack.push(first, distance, node.children[slot]),
+                    Level::Leaf => found.push(node.children[slot]),
+                }
             }
         }
     }

@@ -1,6 +1,7 @@
 //! The nearest triangles of eight points while candidates are gone through.
 
-use super::query::Hit;
+use super::Ssvh;
+use super::query::{Hit, widened};
 use crate::geom::lanes::{F64s, P64s};
 use crate::geom::triangle::TriangleInLanes;
 use pulp::Simd;
@@ -35,6 +36,27 @@ impl NearestOfEight {
         let before = found.less(nearest) | (found.at_most(nearest) & id.less(ids));
         before.select(found, nearest).store(&mut self.squared, vector);
         before.select(id, ids).store(&mut self.ids, vector);
+    }
+
+    /// Offers the triangle at a position of the hierarchy's order to all points.
+    #[inline(always)]
+    pub fn offer_to_all<S: Simd>(&mut self, simd: S, tree: &Ssvh, position: u32, points: &[[f64; 8]; 3]) {
+        let triangle = tree.triangle_at(position).in_lanes(simd);
+        for vector in 0..8 / F64s::<S>::COUNT {
+            self.offer(simd, &triangle, tree.id_at(position), points, vector);
+        }
+    }
+
+    /// Sets how near anything must be to matter to each point, with what bounds may be too large by, and returns the largest
+    /// of these limits.
+    #[inline(always)]
+    pub(super) fn limits(&self, slack: f64, limits: &mut [f32; 8]) -> f32 {
+        let mut largest = 0.0f32;
+        for (limit, &squared) in limits.iter_mut().zip(&self.squared) {
+            *limit = widened(squared, slack);
+            largest = largest.max(*limit);
+        }
+        largest
     }
 
     /// What was found; without meaning for points that nothing was offered to.

@@ -1,7 +1,9 @@
 //! A node: eight swept sphere volumes side by side, so that one pass bounds all eight.
 
+use crate::geom::lanes::{F32s, P32s};
 use crate::geom::swept::{Sphere, Swept};
 use glam::{DVec3, Vec3};
+use pulp::Simd;
 
 /// Children of a node.
 pub(super) const WIDTH: usize = 8;
@@ -85,40 +87,56 @@ impl Node {
     /// Per slot the distance of `q` (relative to the hierarchy's centre) from the volume, negative
     /// inside, exact but for rounding of a few 2^-24 of the distances involved; infinite if empty.
     #[inline(always)]
-    pub(super) fn distances(&self, q: Vec3) -> [f32; WIDTH] {
-        let mut out = [0.0; WIDTH];
-        #[allow(clippy::needless_range_loop, reason = "a slot runs through several arrays in step")]
-        for i in 0..WIDTH {
-            let (dx, dy, dz) = (q.x - self.centre[0][i], q.y - self.centre[1][i], q.z - self.centre[2][i]);
-            let (ux, uy, uz) = (self.u[0][i], self.u[1][i], self.u[2][i]);
-            let (vx, vy, vz) = (self.v[0][i], self.v[1][i], self.v[2][i]);
-            let along_u = dx * ux + dy * uy + dz * uz;
-            let along_v = dx * vx + dy * vy + dz * vz;
-            let (nx, ny, nz) = (uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx);
-            let height = dx * nx + dy * ny + dz * nz;
-            let beyond_u = (along_u.abs() - self.half[0][i]).max(0.0);
-            let beyond_v = (along_v.abs() - self.half[1][i]).max(0.0);
-            out[i] = (beyond_u * beyond_u + beyond_v * beyond_v + height * height).sqrt() - self.radius[i];
+    pub(super) fn distances<S: Simd>(&self, simd: S, q: Vec3) -> [f32; WIDTH] {
+        let q = P32s::splat(simd, q.to_array());
+        let mut distances = [0.0; WIDTH];
+        for vector in 0..WIDTH / F32s::<S>::COUNT {
+            let (u, v) = (P32s::load(simd, &self.u, vector), P32s::load(simd, &self.v, vector));
+            let half = [0, 1].map(|k| F32s::load(simd, &self.half[k], vector));
+            let from = q - P32s::load(simd, &self.centre, vector);
+            let distance = core_distance(simd, from, u, v, half);
+            (distance - F32s::load(simd, &self.radius, vector)).store(&mut distances, vector);
         }
-        out
+        distances
     }
 
-    /// The distances of eight points from the volume in `slot`, as [`distances`](Self::distances) gives for
-    /// one point from eight volumes. `x`, `y` and `z` are the points' coordinates.
+    /// Whether one of eight points, as [`distances`](Self::distances) has it for one from eight volumes, is as near to the
+    /// volume in `slot` as its limit.
     #[inline(always)]
-    pub(super) fn distances_from(&self, slot: usize, points: &[[f32; 8]; 3]) -> [f32; 8] {
-        let at = |a: &[[f32; WIDTH]; 3]| Vec3::new(a[0][slot], a[1][slot], a[2][slot]);
-        let (centre, u, v) = (at(&self.centre), at(&self.u), at(&self.v));
-        let n = u.cross(v);
-        let (half_u, half_v, radius) = (self.half[0][slot], self.half[1][slot], self.radius[slot]);
-        let mut out = [0.0; 8];
-        for i in 0..8 {
-            let (dx, dy, dz) = (points[0][i] - centre.x, points[1][i] - centre.y, points[2][i] - centre.z);
-            let beyond_u = ((dx * u.x + dy * u.y + dz * u.z).abs() - half_u).max(0.0);
-            let beyond_v = ((dx * v.x + dy * v.y + dz * v.z).abs() - half_v).max(0.0);
-            let height = dx * n.x + dy * n.y + dz * n.z;
-            out[i] = (beyond_u * beyond_u + beyond_v * beyond_v + height * height).sqrt() - radius;
+    pub(super) fn is_near<S: Simd>(
+        &self,
+        simd: S,
+        slot: usize,
+        points: &[[f32; 8]; 3],
+        limits: &[f32; 8],
+    ) -> bool {
+        let centre = P32s::splat(simd, [self.centre[0][slot], self.centre[1][slot], self.centre[2][slot]]);
+        let u = P32s::splat(simd, [self.u[0][slot], self.u[1][slot], self.u[2][slot]]);
+        let v = P32s::splat(simd, [self.v[0][slot], self.v[1][slot], self.v[2][slot]]);
+        let half = [F32s::splat(simd, self.half[0][slot]), F32s::splat(simd, self.half[1][slot])];
+        let radius = F32s::splat(simd, self.radius[slot]);
+        let mut any = false;
+        for vector in 0..8 / F32s::<S>::COUNT {
+            let from = P32s::load(simd, points, vector) - centre;
+            let distance = core_distance(simd, from, u, v, half) - radius;
+            any |= distance.at_most(F32s::load(simd, limits, vector)).any();
         }
-        out
+        any
     }
+}
+
+/// How far points at `from` of the centre of a rectangle with the axes `u` and `v` are from it.
+#[inline(always)]
+fn core_distance<S: Simd>(
+    simd: S,
+    from: P32s<S>,
+    u: P32s<S>,
+    v: P32s<S>,
+    [half_u, half_v]: [F32s<S>; 2],
+) -> F32s<S> {
+    let zero = F32s::splat(simd, 0.0);
+    let beyond_u = (from.dot_plus(u, zero).abs() - half_u).max(zero);
+    let beyond_v = (from.dot_plus(v, zero).abs() - half_v).max(zero);
+    let height = from.dot_plus(u.cross(v), zero);
+    beyond_u.times_plus(beyond_u, beyond_v.times_plus(beyond_v, height * height)).sqrt()
 }

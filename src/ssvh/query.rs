@@ -1,10 +1,10 @@
 //! Closest-triangle queries, for one point and for eight that are near each other.
 
-use super::Ssvh;
 use super::node::{Level, Node, WIDTH};
-use crate::geom::triangle::Eight;
+use super::{NearestOfEight, Ssvh};
+use crate::geom::lanes::in_lanes;
 use glam::{DVec3, Vec3};
-use multiversion::multiversion;
+use pulp::{Simd, WithSimd};
 
 /// The closest triangle to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,20 +41,21 @@ impl Ssvh {
     /// The same as [`closest`](Self::closest), faster when `guess` is a triangle close to `p`.
     pub fn closest_from(&self, p: DVec3, guess: u32) -> Hit {
         let distance_squared = self.triangles[self.position(guess)].distance_squared(p);
-        improve(self, p, Hit { triangle: guess, distance_squared })
+        in_lanes(Improve { tree: self, p, best: Hit { triangle: guess, distance_squared } })
     }
 
     /// The closest triangle if its distance is at most `bound`.
     pub fn closest_within(&self, p: DVec3, bound: f64) -> Option<Hit> {
         // No triangle has this number, so a real one at exactly the bound comes before it.
-        let hit = improve(self, p, Hit { triangle: u32::MAX, distance_squared: bound * bound });
+        let best = Hit { triangle: u32::MAX, distance_squared: bound * bound };
+        let hit = in_lanes(Improve { tree: self, p, best });
         (hit.triangle != u32::MAX).then_some(hit)
     }
 
     /// The closest triangles to eight points, each as [`closest`](Self::closest) finds it, in one descent:
     /// it pays when the points are about as near to each other as triangles are large, or nearer.
     pub fn closest_to_eight(&self, points: &[DVec3; 8], guess: u32) -> [Hit; 8] {
-        improve_eight(self, points, guess)
+        in_lanes(ImproveEight { tree: self, points, guess })
     }
 
     /// Rounding of a bound for points whose coordinates relative to the centre are at most `sizes`.
@@ -65,98 +66,131 @@ impl Ssvh {
 }
 
 /// The best of `best` and all triangles of the hierarchy.
-#[multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt+popcnt"))]
-fn improve(tree: &Ssvh, p: DVec3, mut best: Hit) -> Hit {
-    let relative = p - tree.centre;
-    let q: Vec3 = relative.as_vec3();
-    let slack = tree.slack(relative.abs());
-    let limit_of = |hit: &Hit| ((hit.distance_squared.sqrt() + slack) as f32).next_up();
-    let mut limit = limit_of(&best);
-    let mut stack = Stack::new();
-    while let Some(node) = stack.pop(tree, limit) {
-        let distances = node.distances(q);
-        let first = stack.waiting;
-        for (&distance, &child) in distances.iter().zip(&node.children) {
-            if distance > limit {
-                continue;
-            }
-            if node.level == Level::Inner {
-                stack.push(first, distance, child);
-                continue;
-            }
-            let position = child as usize;
-            let hit = Hit {
-                triangle: tree.ids[position],
-                distance_squared: tree.triangles[position].distance_squared(p),
-            };
-            if hit.before(&best) {
-                best = hit;
-                limit = limit_of(&best);
+struct Improve<'a> {
+    tree: &'a Ssvh,
+    p: DVec3,
+    best: Hit,
+}
+
+impl WithSimd for Improve<'_> {
+    type Output = Hit;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Hit {
+        let Improve { tree, p, mut best } = self;
+        let relative = p - tree.centre;
+        let q: Vec3 = relative.as_vec3();
+        let slack = tree.slack(relative.abs());
+        let mut limit = widened(best.distance_squared, slack);
+        let mut stack = Stack::new();
+        while let Some(node) = stack.pop(tree, limit) {
+            let distances = node.distances(simd, q);
+            let first = stack.waiting;
+            for (&distance, &child) in distances.iter().zip(&node.children) {
+                if distance > limit {
+                    continue;
+                }
+                if node.level == Level::Inner {
+                    stack.push(first, distance, child);
+                    continue;
+                }
+                let position = child as usize;
+                let hit = Hit {
+                    triangle: tree.ids[position],
+                    distance_squared: tree.triangles[position].distance_squared(p),
+                };
+                if hit.before(&best) {
+                    best = hit;
+                    limit = widened(best.distance_squared, slack);
+                }
             }
         }
+        best
     }
-    best
+}
+
+/// The distance by its square, with what bounds may be too large by.
+#[inline(always)]
+pub(super) fn widened(squared: f64, slack: f64) -> f32 {
+    ((squared.sqrt() + slack) as f32).next_up()
 }
 
 /// The closest triangles to eight points. A volume matters when it is near enough to their centre to be
 /// near enough to any of them, and then when it is to one of them.
-#[multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt+popcnt"))]
-#[allow(clippy::needless_range_loop, reason = "a lane runs through several arrays in step")]
-fn improve_eight(tree: &Ssvh, points: &[DVec3; 8], guess: u32) -> [Hit; 8] {
-    let lo = points.iter().copied().reduce(DVec3::min).expect("eight points");
-    let hi = points.iter().copied().reduce(DVec3::max).expect("eight points");
-    let centre = lo.midpoint(hi);
-    let radius = points.iter().map(|&p| (p - centre).length_squared()).fold(0.0, f64::max).sqrt();
-    let slack = tree.slack((centre - tree.centre).abs() + radius);
-    let radius = (radius as f32).next_up();
-    let relative = points.map(|p| (p - tree.centre).as_vec3());
-    let relative = [relative.map(|p| p.x), relative.map(|p| p.y), relative.map(|p| p.z)];
-    let eight = Eight::from(points);
-    let mut nearest = tree.triangles[tree.position(guess)].distances_squared(&eight);
-    let mut triangles = [guess; 8];
-    let mut limits = [0.0f32; 8];
-    let update = |limits: &mut [f32; 8], nearest: &[f64; 8]| -> f32 {
-        let mut largest = 0.0f32;
-        for i in 0..8 {
-            limits[i] = ((nearest[i].sqrt() + slack) as f32).next_up();
-            largest = largest.max(limits[i]);
-        }
-        largest + radius
-    };
-    let mut limit = update(&mut limits, &nearest);
-    let q = (centre - tree.centre).as_vec3();
-    let mut stack = Stack::new();
-    while let Some(node) = stack.pop(tree, limit) {
-        let distances = node.distances(q);
-        let first = stack.waiting;
-        for slot in 0..WIDTH {
-            if distances[slot] > limit {
-                continue;
-            }
-            let from_each = node.distances_from(slot, &relative);
-            if !(0..8).fold(false, |any, i| any | (from_each[i] <= limits[i])) {
-                continue;
-            }
-            let child = node.children[slot];
-            if node.level == Level::Inner {
-                stack.push(first, distances[slot], child);
-                continue;
-            }
-            let triangle = tree.ids[child as usize];
-            let found = tree.triangles[child as usize].distances_squared(&eight);
-            let mut any = false;
-            for i in 0..8 {
-                let better = (found[i] < nearest[i]) | ((found[i] == nearest[i]) & (triangle < triangles[i]));
-                nearest[i] = if better { found[i] } else { nearest[i] };
-                triangles[i] = if better { triangle } else { triangles[i] };
-                any |= better;
-            }
-            if any {
-                limit = update(&mut limits, &nearest);
+struct ImproveEight<'a> {
+    tree: &'a Ssvh,
+    points: &'a [DVec3; 8],
+    guess: u32,
+}
+
+impl WithSimd for ImproveEight<'_> {
+    type Output = [Hit; 8];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> [Hit; 8] {
+        let ImproveEight { tree, points, guess } = self;
+        let Around { centre, radius, slack, relative, exact } = Around::new(tree, points);
+        let mut nearest = NearestOfEight::NONE;
+        nearest.offer_to_all(simd, tree, tree.position(guess) as u32, &exact);
+        let mut limits = [0.0; 8];
+        let mut limit = nearest.limits(slack, &mut limits) + radius;
+        let mut stack = Stack::new();
+        while let Some(node) = stack.pop(tree, limit) {
+            let distances = node.distances(simd, centre);
+            let first = stack.waiting;
+            for (slot, &distance) in distances.iter().enumerate() {
+                if distance > limit || !node.is_near(simd, slot, &relative, &limits) {
+                    continue;
+                }
+                match node.level {
+                    Level::Inner => stack.push(first, distance, node.children[slot]),
+                    Level::Leaf => {
+                        nearest.offer_to_all(simd, tree, node.children[slot], &exact);
+                        limit = nearest.limits(slack, &mut limits) + radius;
+                    }
+                }
             }
         }
+        nearest.hits()
     }
-    std::array::from_fn(|i| Hit { triangle: triangles[i], distance_squared: nearest[i] })
+}
+
+/// Eight points as a hierarchy sees them.
+pub(super) struct Around {
+    /// The middle of the box around them, relative to the hierarchy's centre.
+    pub(super) centre: Vec3,
+    /// The largest distance from it.
+    pub(super) radius: f32,
+    /// Rounding of bounds.
+    pub(super) slack: f64,
+    /// The points relative to the hierarchy's centre.
+    pub(super) relative: [[f32; 8]; 3],
+    /// The points.
+    pub(super) exact: [[f64; 8]; 3],
+}
+
+impl Around {
+    #[inline(always)]
+    pub(super) fn new(tree: &Ssvh, points: &[DVec3; 8]) -> Around {
+        let (mut lo, mut hi) = (points[0], points[0]);
+        let (mut relative, mut exact) = ([[0.0; 8]; 3], [[0.0; 8]; 3]);
+        for (n, &p) in points.iter().enumerate() {
+            (lo, hi) = (lo.min(p), hi.max(p));
+            for axis in 0..3 {
+                relative[axis][n] = (p[axis] - tree.centre[axis]) as f32;
+                exact[axis][n] = p[axis];
+            }
+        }
+        let centre = lo.midpoint(hi);
+        let mut radius: f64 = 0.0;
+        for &p in points {
+            radius = radius.max((p - centre).length_squared());
+        }
+        let radius = radius.sqrt();
+        let slack = tree.slack((centre - tree.centre).abs() + radius);
+        let radius = (radius as f32).next_up();
+        Around { centre: (centre - tree.centre).as_vec3(), radius, slack, relative, exact }
+    }
 }
 
 /// The nodes that wait for their turn, nearest siblings on top.
