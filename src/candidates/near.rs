@@ -86,8 +86,8 @@ impl Candidates<'_> {
     pub fn closest(&self, ssvh: &Ssvh, p: DVec3) -> Hit {
         let scale = 1.0 / self.voxel;
         let x = self.local(p);
-        // No triangle has this number, so a real one comes before it.
-        let mut best = Hit { triangle: u32::MAX, distance_squared: f64::INFINITY };
+        // Whatever is as near as this comes before it.
+        let mut best = Hit { triangle: ssvh.id_at(self.positions[0]), distance_squared: f64::INFINITY };
         let mut most = f32::INFINITY;
         for (positions, packed) in self.positions.chunks(TOGETHER).zip(self.packed.chunks(TOGETHER)) {
             let mut bounds = [0.0; TOGETHER];
@@ -99,13 +99,13 @@ impl Candidates<'_> {
                 if bound > most {
                     continue;
                 }
-                let position = positions[if n == 0 {
-                    first
-                } else if n == first {
-                    0
-                } else {
-                    n
-                }];
+                // The first one and that one have changed places.
+                let n = match n {
+                    0 => first,
+                    n if n == first => 0,
+                    n => n,
+                };
+                let position = positions[n];
                 let hit = ssvh.hit(position, p);
                 if hit.before(&best) {
                     best = hit;

@@ -1,6 +1,7 @@
 //! Changes of a finished mesh that bring it nearer to the surface: which to try. Whether they are made decides the
 //! exact test of `patch`.
 
+use super::answers::Answers;
 use super::feature::{Asker, feature_between, nearest};
 use super::features::{Features, Sides};
 use super::grid::Grid;
@@ -51,6 +52,8 @@ pub struct Editor<'a> {
     pub trusting: bool,
     /// See [`Surface::at`].
     pub piece: u32,
+    /// How far points are from the surface, in voxels.
+    pub answers: Answers,
 }
 
 impl Editor<'_> {
@@ -194,7 +197,8 @@ impl Editor<'_> {
         if !sides.is_empty() && sides.distance(p) < SURE * self.voxel() {
             return 0.0;
         }
-        self.surface.at(p, &mut self.piece).0.abs() / self.voxel()
+        let voxel = self.voxel();
+        self.answers.get(p, || self.surface.at(p, &mut self.piece).0.abs() / voxel)
     }
 }
 

@@ -40,6 +40,7 @@
 //! the points where connections pass the cell's faces. On a face these triangles do not overlap, walls
 //! separate the cones of different sheets, and a disc of good triangles stays in its edge's tetrahedra.
 
+mod answers;
 mod beside;
 mod cell;
 mod cells;

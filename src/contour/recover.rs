@@ -8,6 +8,7 @@
 //! First all vertices go to their places, then the rest is mended: a split that is made before the vertices around
 //! it are in place is in their way later.
 
+use super::answers::Answers;
 use super::cells::Cells;
 use super::editor::{Editor, mix};
 use super::features::Sides;
@@ -89,8 +90,16 @@ pub fn recover(
             },
             |leaf, patch| {
                 let tolerance = TOLERANCE;
-                let mut editor =
-                    Editor { patch, surface, grid, features, tolerance, trusting: true, piece: 0 };
+                let mut editor = Editor {
+                    patch,
+                    surface,
+                    grid,
+                    features,
+                    tolerance,
+                    trusting: true,
+                    piece: 0,
+                    answers: Answers::new(),
+                };
                 let done = editor.grant_all(&wishes[leaf.0 as usize], stage);
                 (editor.patch, (leaf, done))
             },

@@ -4,6 +4,7 @@
 //! split at the worst place, with a new vertex on the surface or on its crease, as often as it takes; each change is
 //! made only if the mesh stays embedded (see `patch`).
 
+use super::answers::Answers;
 use super::cells::Cells;
 use super::editor::Editor;
 use super::patch::Bounds;
@@ -64,8 +65,16 @@ pub fn refine(
                 Some(Bounds::around(mesh.triangles(leaf).flat_map(|t| mesh.corners(t))))
             },
             |leaf, patch| {
-                let mut editor =
-                    Editor { patch, surface, grid, features, tolerance, trusting: false, piece: 0 };
+                let mut editor = Editor {
+                    patch,
+                    surface,
+                    grid,
+                    features,
+                    tolerance,
+                    trusting: false,
+                    piece: 0,
+                    answers: Answers::new(),
+                };
                 let done = editor.refine(&numbers[leaf.0 as usize], is_last);
                 (editor.patch, (leaf, done))
             },

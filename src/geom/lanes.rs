@@ -352,3 +352,53 @@ impl<S: Simd> M64s<S> {
         P64s { x: self.select(yes.x, no.x), y: self.select(yes.y, no.y), z: self.select(yes.z, no.z) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is less than `limit`, a bit each; the bytes of `words`; the least of `numbers`.
+    struct Kernel<'a> {
+        numbers: &'a [f32; 8],
+        limit: f32,
+        words: &'a [u32; 8],
+    }
+
+    impl WithSimd for Kernel<'_> {
+        type Output = (u8, [[f32; 8]; 4], f32);
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+            let (mut bits, mut bytes, mut least) = (0, [[0.0; 8]; 4], f32::INFINITY);
+            for vector in 0..8 / F32s::<S>::COUNT {
+                let numbers = F32s::load(simd, self.numbers, vector);
+                bits |= numbers.less(F32s::splat(simd, self.limit)).bits(vector);
+                least = least.min(numbers.least());
+                for (n, bytes) in bytes.iter_mut().enumerate() {
+                    F32s::bytes(simd, self.words, vector, n as u32).store(bytes, vector);
+                }
+            }
+            (bits, bytes, least)
+        }
+    }
+
+    #[test]
+    fn bits_and_bytes_are_those_of_each_lane() {
+        let numbers = [3.0, -1.0, 0.0, 7.5, 2.0, f32::INFINITY, f32::NEG_INFINITY, 2.5];
+        let words: [u32; 8] =
+            std::array::from_fn(|n| 0x9e37_79b9u32.wrapping_mul(n as u32 + 1) | 0xff << (4 * n));
+        for limit in [f32::NEG_INFINITY, -0.5, 2.5, f32::INFINITY] {
+            let kernel = || Kernel { numbers: &numbers, limit, words: &words };
+            let here = in_lanes(kernel());
+            assert_eq!(here, kernel().with_simd(pulp::Scalar));
+            let (bits, bytes, least) = here;
+            assert_eq!(least, f32::NEG_INFINITY);
+            for n in 0..8 {
+                assert_eq!(bits >> n & 1 == 1, numbers[n] < limit);
+                for (k, byte) in words[n].to_le_bytes().into_iter().enumerate() {
+                    assert_eq!(bytes[k][n], f32::from(byte));
+                }
+            }
+        }
+    }
+}

@@ -38,6 +38,12 @@ impl NearestOfEight {
         before.select(id, ids).store(&mut self.ids, vector);
     }
 
+    /// The same with `id` for what is infinitely far, so that there is a triangle whatever is offered.
+    #[inline(always)]
+    pub(super) fn unless_nearer(id: u32) -> NearestOfEight {
+        NearestOfEight { ids: [f64::from(id); 8], ..NearestOfEight::NONE }
+    }
+
     /// Offers the triangle at a position of the hierarchy's order to all points.
     #[inline(always)]
     pub fn offer_to_all<S: Simd>(&mut self, simd: S, tree: &Ssvh, position: u32, points: &[[f64; 8]; 3]) {

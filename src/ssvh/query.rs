@@ -130,7 +130,7 @@ impl WithSimd for ImproveEight<'_> {
     fn with_simd<S: Simd>(self, simd: S) -> [Hit; 8] {
         let ImproveEight { tree, points, guess } = self;
         let Around { centre, radius, slack, relative, exact } = Around::new(tree, points);
-        let mut nearest = NearestOfEight::NONE;
+        let mut nearest = NearestOfEight::unless_nearer(guess);
         nearest.offer_to_all(simd, tree, tree.position(guess) as u32, &exact);
         let mut limits = [0.0; 8];
         let mut limit = nearest.limits(slack, &mut limits) + radius;
