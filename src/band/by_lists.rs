@@ -1,4 +1,4 @@
-//! A leaf by candidate lists: one walk of the hierarchy for all of it.
+//! A leaf by candidate lists: one walk of the hierarchy for all of it, unless there are too many.
 
 use super::LeafBatch;
 use super::build::Worker;

@@ -1,4 +1,5 @@
-//! A leaf by a query of the hierarchy for every eight blocks or nodes: the plain way, which the lists are held against.
+//! A leaf by a query of the hierarchy for every eight blocks or nodes: for leaves whose lists would be too long, and the
+//! plain way that the lists are held against.
 
 use super::LeafBatch;
 use super::build::Worker;

@@ -2,6 +2,7 @@
 //! exact test of `patch`.
 
 use super::answers::Answers;
+use super::cells::Cells;
 use super::feature::{Asker, feature_between, nearest};
 use super::features::{Features, Sides};
 use super::grid::Grid;
@@ -54,6 +55,20 @@ pub struct Editor<'a> {
     pub piece: u32,
     /// How far points are from the surface, in voxels.
     pub answers: Answers,
+}
+
+impl<'a> Editor<'a> {
+    /// An editor of a patch of the mesh of `cells`. See the fields.
+    pub fn new(
+        patch: Patch,
+        surface: &'a dyn Surface,
+        cells: &'a Cells<'_>,
+        tolerance: f64,
+        trusting: bool,
+    ) -> Editor<'a> {
+        let (grid, features) = (&cells.grid, &cells.features);
+        Editor { patch, surface, grid, features, tolerance, trusting, piece: 0, answers: Answers::new() }
+    }
 }
 
 impl Editor<'_> {

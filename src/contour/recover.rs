@@ -8,7 +8,6 @@
 //! First all vertices go to their places, then the rest is mended: a split that is made before the vertices around
 //! it are in place is in their way later.
 
-use super::answers::Answers;
 use super::cells::Cells;
 use super::editor::{Editor, mix};
 use super::features::Sides;
@@ -75,7 +74,6 @@ pub fn recover(
     run: &RunSettings,
 ) -> Result<Recovered, Cancelled> {
     let mut recovered = Recovered::default();
-    let (grid, features) = (&cells.grid, &cells.features);
     // By leaf how many wishes are not granted, and whether there is something left to do.
     let mut open: Vec<(u64, bool)> = wishes.iter().map(|w| (0, !w.is_empty())).collect();
     for stage in STAGES {
@@ -89,17 +87,7 @@ pub fn recover(
                 is_open[leaf.0 as usize].1.then(|| Bounds::around(wishes.iter().flat_map(places)))
             },
             |leaf, patch| {
-                let tolerance = TOLERANCE;
-                let mut editor = Editor {
-                    patch,
-                    surface,
-                    grid,
-                    features,
-                    tolerance,
-                    trusting: true,
-                    piece: 0,
-                    answers: Answers::new(),
-                };
+                let mut editor = Editor::new(patch, surface, cells, TOLERANCE, true);
                 let done = editor.grant_all(&wishes[leaf.0 as usize], stage);
                 (editor.patch, (leaf, done))
             },

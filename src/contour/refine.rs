@@ -4,7 +4,6 @@
 //! split at the worst place, with a new vertex on the surface or on its crease, as often as it takes; each change is
 //! made only if the mesh stays embedded (see `patch`).
 
-use super::answers::Answers;
 use super::cells::Cells;
 use super::editor::Editor;
 use super::patch::Bounds;
@@ -47,7 +46,6 @@ pub fn refine(
     run: &RunSettings,
 ) -> Result<Refined, Cancelled> {
     let mut refined = Refined::default();
-    let (grid, features) = (&cells.grid, &cells.features);
     let mut is_last = false;
     for pass in 0..=PASSES {
         // The last pass only looks.
@@ -65,16 +63,7 @@ pub fn refine(
                 Some(Bounds::around(mesh.triangles(leaf).flat_map(|t| mesh.corners(t))))
             },
             |leaf, patch| {
-                let mut editor = Editor {
-                    patch,
-                    surface,
-                    grid,
-                    features,
-                    tolerance,
-                    trusting: false,
-                    piece: 0,
-                    answers: Answers::new(),
-                };
+                let mut editor = Editor::new(patch, surface, cells, tolerance, false);
                 let done = editor.refine(&numbers[leaf.0 as usize], is_last);
                 (editor.patch, (leaf, done))
             },

@@ -57,7 +57,7 @@ impl LeafSolver<'_> {
         statistics
     }
 
-    /// Intersects them eight at a time, as far as they have a list in common.
+    /// Intersects them eight at a time, those of a block together: they have its list in common, if it has one.
     fn by_blocks(
         &self,
         leaf: &Leaf<'_>,

@@ -1,7 +1,6 @@
 //! Lists of triangles: all that come near enough to one of eight points, and the closest of a list.
 
-use super::node::Level;
-use super::query::{Around, Hit, Stack};
+use super::query::{Around, Hit, Visit, descend};
 use super::{NearestOfEight, Ssvh};
 use crate::geom::lanes::in_lanes;
 use crate::geom::triangle::Triangle;
@@ -84,30 +83,25 @@ impl WithSimd for Collect<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Collect { tree, points, limits: exact, most, found } = self;
-        let Around { centre, radius, slack, relative, .. } = Around::new(tree, points);
+        let around = Around::new(tree, points);
         let mut limits = [0.0; 8];
-        let mut limit = 0.0f32;
-        for (rounded, &exact) in limits.iter_mut().zip(exact) {
-            *rounded = ((exact + slack) as f32).next_up();
-            limit = limit.max(*rounded);
+        for (limit, &exact) in limits.iter_mut().zip(exact) {
+            *limit = ((exact + around.slack) as f32).next_up();
         }
-        limit += radius;
-        let mut stack = Stack::new();
-        while let Some(node) = stack.pop(tree, limit) {
-            if found.len() > most {
-                return;
-            }
-            let distances = node.distances(simd, centre);
-            let first = stack.waiting;
-            for (slot, &distance) in distances.iter().enumerate() {
-                if distance > limit || !node.is_near(simd, slot, &relative, &limits) {
-                    continue;
-                }
-                match node.level {
-                    Level::Inner => stack.push(first, distance, node.children[slot]),
-                    Level::Leaf => found.push(node.children[slot]),
-                }
-            }
-        }
+        descend(simd, tree, &around, limits, &mut Append { most, found });
+    }
+}
+
+/// Keeps all.
+struct Append<'a> {
+    most: usize,
+    found: &'a mut Vec<u32>,
+}
+
+impl Visit for Append<'_> {
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, _: S, position: u32, _: &mut [f32; 8]) -> bool {
+        self.found.push(position);
+        self.found.len() <= self.most
     }
 }

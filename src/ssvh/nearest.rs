@@ -53,16 +53,12 @@ impl NearestOfEight {
         }
     }
 
-    /// Sets how near anything must be to matter to each point, with what bounds may be too large by, and returns the largest
-    /// of these limits.
+    /// Sets how near anything must be to matter to each point, with what bounds may be too large by.
     #[inline(always)]
-    pub(super) fn limits(&self, slack: f64, limits: &mut [f32; 8]) -> f32 {
-        let mut largest = 0.0f32;
+    pub(super) fn limits(&self, slack: f64, limits: &mut [f32; 8]) {
         for (limit, &squared) in limits.iter_mut().zip(&self.squared) {
             *limit = widened(squared, slack);
-            largest = largest.max(*limit);
         }
-        largest
     }
 
     /// What was found; without meaning for points that nothing was offered to.

@@ -115,8 +115,7 @@ pub(super) fn widened(squared: f64, slack: f64) -> f32 {
     ((squared.sqrt() + slack) as f32).next_up()
 }
 
-/// The closest triangles to eight points. A volume matters when it is near enough to their centre to be
-/// near enough to any of them, and then when it is to one of them.
+/// The closest triangles to eight points.
 struct ImproveEight<'a> {
     tree: &'a Ssvh,
     points: &'a [DVec3; 8],
@@ -129,30 +128,77 @@ impl WithSimd for ImproveEight<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [Hit; 8] {
         let ImproveEight { tree, points, guess } = self;
-        let Around { centre, radius, slack, relative, exact } = Around::new(tree, points);
-        let mut nearest = NearestOfEight::unless_nearer(guess);
-        nearest.offer_to_all(simd, tree, tree.position(guess) as u32, &exact);
+        let around = Around::new(tree, points);
+        let mut closest = Closest { tree, around: &around, nearest: NearestOfEight::unless_nearer(guess) };
         let mut limits = [0.0; 8];
-        let mut limit = nearest.limits(slack, &mut limits) + radius;
-        let mut stack = Stack::new();
-        while let Some(node) = stack.pop(tree, limit) {
-            let distances = node.distances(simd, centre);
-            let first = stack.waiting;
-            for (slot, &distance) in distances.iter().enumerate() {
-                if distance > limit || !node.is_near(simd, slot, &relative, &limits) {
-                    continue;
-                }
-                match node.level {
-                    Level::Inner => stack.push(first, distance, node.children[slot]),
-                    Level::Leaf => {
-                        nearest.offer_to_all(simd, tree, node.children[slot], &exact);
-                        limit = nearest.limits(slack, &mut limits) + radius;
+        closest.visit(simd, tree.position(guess) as u32, &mut limits);
+        descend(simd, tree, &around, limits, &mut closest);
+        closest.nearest.hits()
+    }
+}
+
+/// Keeps the nearest.
+struct Closest<'a> {
+    tree: &'a Ssvh,
+    around: &'a Around,
+    nearest: NearestOfEight,
+}
+
+impl Visit for Closest<'_> {
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, simd: S, position: u32, limits: &mut [f32; 8]) -> bool {
+        self.nearest.offer_to_all(simd, self.tree, position, &self.around.exact);
+        self.nearest.limits(self.around.slack, limits);
+        true
+    }
+}
+
+/// What is done with the triangles that a descent for eight points comes to.
+pub(super) trait Visit {
+    /// Takes the triangle at a position of the hierarchy's order. May lower the limits, within which of each point triangles
+    /// matter. Returns whether to go on.
+    fn visit<S: Simd>(&mut self, simd: S, position: u32, limits: &mut [f32; 8]) -> bool;
+}
+
+/// Goes down to all triangles that can be within the limits of eight points. A volume matters when it is near enough to
+/// their centre to be near enough to any of them, and then when it is to one of them.
+#[inline(always)]
+pub(super) fn descend<S: Simd>(
+    simd: S,
+    tree: &Ssvh,
+    around: &Around,
+    mut limits: [f32; 8],
+    visitor: &mut impl Visit,
+) {
+    let mut limit = largest(&limits) + around.radius;
+    let mut stack = Stack::new();
+    while let Some(node) = stack.pop(tree, limit) {
+        let distances = node.distances(simd, around.centre);
+        let first = stack.waiting;
+        for (slot, &distance) in distances.iter().enumerate() {
+            if distance > limit || !node.is_near(simd, slot, &around.relative, &limits) {
+                continue;
+            }
+            match node.level {
+                Level::Inner => stack.push(first, distance, node.children[slot]),
+                Level::Leaf => {
+                    if !visitor.visit(simd, node.children[slot], &mut limits) {
+                        return;
                     }
+                    limit = largest(&limits) + around.radius;
                 }
             }
         }
-        nearest.hits()
     }
+}
+
+#[inline(always)]
+fn largest(limits: &[f32; 8]) -> f32 {
+    let mut largest = 0.0f32;
+    for &limit in limits {
+        largest = largest.max(limit);
+    }
+    largest
 }
 
 /// Eight points as a hierarchy sees them.
@@ -194,21 +240,21 @@ impl Around {
 }
 
 /// The nodes that wait for their turn, nearest siblings on top.
-pub(super) struct Stack {
+struct Stack {
     entries: [(f32, u32); STACK],
-    pub(super) waiting: usize,
+    waiting: usize,
 }
 
 impl Stack {
     /// The stack with the root on it.
     #[inline(always)]
-    pub(super) fn new() -> Self {
+    fn new() -> Self {
         Stack { entries: [(0.0, 0); STACK], waiting: 1 }
     }
 
     /// The next node whose volume is within `limit`.
     #[inline(always)]
-    pub(super) fn pop<'t>(&mut self, tree: &'t Ssvh, limit: f32) -> Option<&'t Node> {
+    fn pop<'t>(&mut self, tree: &'t Ssvh, limit: f32) -> Option<&'t Node> {
         while self.waiting > 0 {
             self.waiting -= 1;
             let (bound, number) = self.entries[self.waiting];
@@ -221,7 +267,7 @@ impl Stack {
 
     /// Puts a node among its siblings, which begin at `first`.
     #[inline(always)]
-    pub(super) fn push(&mut self, first: usize, distance: f32, number: u32) {
+    fn push(&mut self, first: usize, distance: f32, number: u32) {
         let mut at = self.waiting;
         while at > first && self.entries[at - 1].0 < distance {
             self.entries[at] = self.entries[at - 1];
