@@ -328,18 +328,19 @@ impl WithSimd for Reach<'_> {
                 }
             }
         }
-        let [low_end, high_end] = ends.map(|end| F32s::splat(simd, end));
+        let ends = [F32s::splat(simd, ends[0]), F32s::splat(simd, ends[1])];
         for (bound, matters) in bounds.iter().zip(matters) {
             let mut bits = 0;
             for vector in 0..8 / F32s::<S>::COUNT {
                 let P32s { x, y, z } = P32s::load(simd, &bound.direction, vector);
                 let low = F32s::load(simd, &bound.low, vector);
+                // Nothing is less than itself.
                 let mut near = low.less(low);
-                for (limits, x_end) in limits.iter().zip([low_end, high_end]) {
+                for (limits, x_end) in limits.iter().zip(ends) {
                     let at = x.times_plus(x_end, low);
-                    for (limits, y_end) in limits.iter().zip([low_end, high_end]) {
+                    for (limits, y_end) in limits.iter().zip(ends) {
                         let at = y.times_plus(y_end, at);
-                        for (limits, z_end) in limits.iter().zip([low_end, high_end]) {
+                        for (limits, z_end) in limits.iter().zip(ends) {
                             let at = z.times_plus(z_end, at);
                             near = near | at.less(F32s::load(simd, limits, vector));
                         }

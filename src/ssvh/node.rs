@@ -92,7 +92,8 @@ impl Node {
         let mut distances = [0.0; WIDTH];
         for vector in 0..WIDTH / F32s::<S>::COUNT {
             let (u, v) = (P32s::load(simd, &self.u, vector), P32s::load(simd, &self.v, vector));
-            let half = [0, 1].map(|k| F32s::load(simd, &self.half[k], vector));
+            let [half_u, half_v] = &self.half;
+            let half = [F32s::load(simd, half_u, vector), F32s::load(simd, half_v, vector)];
             let from = q - P32s::load(simd, &self.centre, vector);
             let distance = core_distance(simd, from, u, v, half);
             (distance - F32s::load(simd, &self.radius, vector)).store(&mut distances, vector);
