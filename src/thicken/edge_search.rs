@@ -57,6 +57,8 @@ pub(super) struct Search<'a> {
     /// The nearest place on the way so far that is inside.
     pub inside: End,
     outside: End,
+    /// Where the outer end is.
+    place: Place,
     step: usize,
     /// The signed distance of the face that is looked for, where it is the lid or the shell, and which of them.
     depth: Option<f64>,
@@ -76,20 +78,21 @@ pub(super) enum Next {
 impl<'a> Search<'a> {
     /// Between the ends of an edge.
     pub fn new(edge: Edge<'a>, inside: End, outside: End) -> Search<'a> {
-        Search { edge, inside, outside, step: 0, depth: None, part: Part::default(), found: None, last: None }
+        let place = edge.solid.place(edge.at(outside.t), &outside.sample);
+        let (depth, part) = (None, Part::default());
+        Search { edge, inside, outside, place, step: 0, depth, part, found: None, last: None }
     }
 
     /// Whether the ends say that this edge crosses the lid: the outer one is above it, and between them neither the distance
     /// nor the closest point jumps.
     pub fn is_at_lid(&self) -> bool {
-        let Search { edge, inside, outside, .. } = self;
-        let place = edge.solid.place(edge.at(outside.t), &outside.sample);
+        let Search { edge, inside, outside, place, .. } = self;
         let holds = |end: &End| {
             let Sample { triangle, feature, .. } = end.sample;
             edge.solid.boundary.holds(edge.solid.distance.mesh(), triangle, feature)
         };
         let most = edge.voxel * (1.0 + 1e-9);
-        place == Place::Above
+        *place == Place::Above
             && (inside.sample.distance - outside.sample.distance).abs() <= most
             && inside.sample.closest.distance(outside.sample.closest) <= most
             && !holds(inside)
@@ -101,9 +104,8 @@ impl<'a> Search<'a> {
         if let Some((crossing, part)) = self.found {
             return Next::Found(crossing, part);
         }
-        let Search { edge, inside, outside, step, .. } = self;
-        let (solid, step) = (edge.solid, *step);
-        let place = solid.place(edge.at(outside.t), &outside.sample);
+        let Search { edge, inside, outside, place, step, .. } = self;
+        let (solid, place, step) = (edge.solid, *place, *step);
         self.part = if place == Place::Above { Part::Lid } else { Part::Shell };
         self.depth = match place {
             Place::Above => Some(-solid.lid),
@@ -143,8 +145,9 @@ impl<'a> Search<'a> {
         let Search { edge, inside, outside, .. } = self;
         self.step += 1;
         self.last = Some(middle);
-        if edge.solid.place(edge.at(middle.t), &middle.sample) != Place::Inside {
-            *outside = middle;
+        let place = edge.solid.place(edge.at(middle.t), &middle.sample);
+        if place != Place::Inside {
+            (*outside, self.place) = (middle, place);
             return;
         }
         // As good as on the face, from the inside.

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 #[derive(Debug)]
 pub(super) struct Rods {
     rods: Vec<Rod>,
-    /// The rods near each cube, ascending.
+    /// The rods near each cube, ascending. A cube is as wide as a rod: a larger one would be near to many.
     near: HashMap<[i32; 3], Vec<u32>>,
     /// Half the length of a rod.
     length: f64,
@@ -29,22 +29,35 @@ struct Rod {
 impl Rods {
     /// Rods of a length and radius in model units.
     pub fn new(surface: &TriMesh, boundary: &Boundary, length: f64, radius: f64) -> Rods {
-        let mut all =
-            Rods { rods: Vec::new(), near: HashMap::new(), length, radius, side: 2.0 * (length + radius) };
-        for (number, &v) in (0u32..).zip(&boundary.touching) {
+        let mut all = Rods { rods: Vec::new(), near: HashMap::new(), length, radius, side: 2.0 * radius };
+        for &v in &boundary.touching {
             let at = DVec3::from(surface.vertices[v as usize]);
-            // No rod is longer than half a cube: eight of them hold it.
-            for corner in 0..8 {
-                let sign = |bit: i32| if corner >> bit & 1 == 1 { 0.25 } else { -0.25 };
-                let cube = all.cube(at + all.side * DVec3::new(sign(0), sign(1), sign(2)));
-                let near = all.near.entry(cube).or_default();
-                if near.last() != Some(&number) {
-                    near.push(number);
-                }
-            }
-            all.rods.push(Rod { at, normal: boundary.touching_normal(v) });
+            all.push(Rod { at, normal: boundary.touching_normal(v) });
         }
         all
+    }
+
+    fn push(&mut self, rod: Rod) {
+        let number = self.rods.len() as u32;
+        // Each point of the rod is within `reach` of one of these places on its axis, along each of the lattice's.
+        let places = (2.0 * self.length / self.radius).ceil().max(1.0);
+        let step = 2.0 * self.length / places;
+        let reach = self.radius + 0.5 * step;
+        for n in 0..=places as u32 {
+            let middle = rod.at + rod.normal * (f64::from(n) * step - self.length);
+            let [lo, hi] = [middle - reach, middle + reach].map(|p| self.cube(p));
+            for x in lo[0]..=hi[0] {
+                for y in lo[1]..=hi[1] {
+                    for z in lo[2]..=hi[2] {
+                        let near = self.near.entry([x, y, z]).or_default();
+                        if near.last() != Some(&number) {
+                            near.push(number);
+                        }
+                    }
+                }
+            }
+        }
+        self.rods.push(rod);
     }
 
     fn cube(&self, p: DVec3) -> [i32; 3] {
@@ -72,21 +85,20 @@ mod tests {
 
     #[test]
     fn a_rod_is_found_from_everywhere_in_it() {
-        let mut rods = Rods { rods: Vec::new(), near: HashMap::new(), length: 1.0, radius: 0.2, side: 2.4 };
-        let at = DVec3::new(-0.3, 2.35, 7.1);
-        for corner in 0..8 {
-            let sign = |bit: i32| if corner >> bit & 1 == 1 { 0.6 } else { -0.6 };
-            let cube = rods.cube(at + DVec3::new(sign(0), sign(1), sign(2)));
-            rods.near.insert(cube, vec![0]);
-        }
-        rods.rods.push(Rod { at, normal: DVec3::X });
-        for x in [-0.99, -0.4, 0.0, 0.5, 0.99] {
-            for (y, z) in [(0.0, 0.19), (0.19, 0.0), (-0.13, 0.14), (0.0, 0.0)] {
-                let (depth, normal) = rods.at(at + DVec3::new(x, y, z)).unwrap();
-                assert!((depth + x).abs() < 1e-12 && normal == DVec3::X);
+        // Somewhere else in its cubes each time.
+        for shift in 0..16 {
+            let at = DVec3::new(-0.3, 2.35, 7.1) + DVec3::new(0.37, 0.051, 0.029) * f64::from(shift);
+            let mut rods =
+                Rods { rods: Vec::new(), near: HashMap::new(), length: 1.0, radius: 0.2, side: 0.4 };
+            rods.push(Rod { at, normal: DVec3::X });
+            for x in [-0.99, -0.4, 0.0, 0.5, 0.99] {
+                for (y, z) in [(0.0, 0.19), (0.19, 0.0), (-0.13, 0.14), (0.0, 0.0)] {
+                    let (depth, normal) = rods.at(at + DVec3::new(x, y, z)).unwrap();
+                    assert!((depth + x).abs() < 1e-12 && normal == DVec3::X);
+                }
+                assert!(rods.at(at + DVec3::new(x, 0.0, 0.21)).is_none());
             }
-            assert!(rods.at(at + DVec3::new(x, 0.0, 0.21)).is_none());
+            assert!(rods.at(at + DVec3::new(1.01, 0.0, 0.0)).is_none());
         }
-        assert!(rods.at(at + DVec3::new(1.01, 0.0, 0.0)).is_none());
     }
 }

@@ -16,7 +16,8 @@ use crate::run::{Cancelled, RunSettings};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// The part of the way to the minimiser that a vertex goes in a round: alpha of \[WC13\].
+/// The part of the way to the minimiser that a vertex goes in a round: alpha of \[WC13\]. Exact normals stay as they are, and so
+/// does the minimiser: there a vertex goes all the way at once, and this far where it must not.
 const BLENDING: f64 = 0.25;
 
 /// Moves shorter than this, in voxels, are not made: nobody sees them, and a test takes as long as for others.
@@ -75,6 +76,13 @@ struct Vertex {
     star: Vec<u32>,
 }
 
+/// Where a vertex is to go.
+struct Target {
+    to: DVec3,
+    /// Whatever the normals of the section.
+    stays: bool,
+}
+
 /// At most `rounds` rounds over a solid.
 pub(super) fn process(
     mesh: &mut TriMesh,
@@ -99,15 +107,22 @@ pub(super) fn process(
         if normals == SectionNormals::Smoothed {
             smooth(&embedding, &mut moving);
         }
-        let targets: Vec<Option<DVec3>> = active
+        let targets: Vec<Option<Target>> = active
             .par_iter()
             .with_min_len(64)
             .map(|vertex| target(&embedding, &moving, solid, vertex, voxel))
             .collect();
         let mut moved = Vec::new();
         for (vertex, to) in active.into_iter().zip(targets) {
-            let Some(to) = to.map(round_off) else { continue };
-            if embedding.try_move(vertex.number, &vertex.star, vertex.first, to) {
+            let Some(Target { to, stays }) = to else { continue };
+            let from = embedding.at(vertex.number);
+            let steps: &[f64] =
+                if stays || normals == SectionNormals::Exact { &[1.0, BLENDING] } else { &[BLENDING] };
+            let mut go = |step: &f64| {
+                let to = round_off(from + step * (to - from));
+                embedding.try_move(vertex.number, &vertex.star, vertex.first, to)
+            };
+            if steps.iter().any(&mut go) {
                 moved.push(vertex);
             }
         }
@@ -188,27 +203,28 @@ fn smooth(embedding: &Embedding<'_>, moving: &mut Moving) {
     }
 }
 
-/// Step 3: where a vertex goes, if that is far enough to go.
+/// Step 3: where a vertex is to go, if that is far enough to go.
 fn target(
     embedding: &Embedding<'_>,
     moving: &Moving,
     solid: &Solid<'_>,
     vertex: &Vertex,
     voxel: f64,
-) -> Option<DVec3> {
+) -> Option<Target> {
     let from = embedding.at(vertex.number);
     // Triangles of strips and lids have no Hermite data of their own.
     let faces: Vec<&Face> = vertex.star.iter().filter_map(|&t| moving.face(t)).collect();
     let mut qef = Qef::default();
     faces.iter().for_each(|face| qef.add(face.point.to_array(), face.normal.to_array()));
     let least = DVec3::from(qef.minimiser_near(from.to_array()).point);
-    let (away, step) = if faces.iter().all(|face| face.part == Part::Shell) {
+    let is_shell = faces.iter().all(|face| face.part == Part::Shell);
+    let to = if is_shell {
         // On a crease of the shell if there is one, and nowhere else.
         let error = |p: DVec3| solid.off_shell(p).map(f64::abs);
         let is_better = error(least)? < 0.5 * error(from)?;
-        (if is_better { least } else { solid.onto_shell(from)? } - from, 1.0)
+        if is_better { least } else { solid.onto_shell(from)? }
     } else {
-        (least - from, BLENDING)
+        least
     };
-    (away.length() > STILL * voxel).then(|| from + step * away)
+    (to.distance(from) > STILL * voxel).then_some(Target { to, stays: is_shell })
 }
