@@ -2,7 +2,7 @@
 
 use super::LeafBatch;
 use super::build::Worker;
-use super::leaf::{Fate, Leaf};
+use super::leaf::{Fate, Leaf, blocks_with_crossed_cells};
 use crate::candidates::{BlockLists, EightPoints, Narrowing};
 use crate::filter::{Block, FilterStatistics};
 use crate::lattice::{Ijk, LEAF_DIM};
@@ -73,8 +73,15 @@ impl Worker<'_> {
         } else {
             leaf.finish(origin, batch)
         };
-        if fate == Fate::Dropped {
-            batch.lists.drop_leaf();
+        match fate {
+            Fate::Dropped => batch.lists.drop_leaf(),
+            // Below an open mesh, shape processing asks anywhere.
+            Fate::Kept if self.below.is_some() => {}
+            Fate::Kept => {
+                if let (Some(inside), Some(active)) = (batch.inside.last(), batch.active.last()) {
+                    batch.lists.retain_blocks(blocks_with_crossed_cells(inside, active));
+                }
+            }
         }
     }
 

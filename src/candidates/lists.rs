@@ -98,6 +98,37 @@ impl BlockLists {
         self.ends.push(self.positions.len());
     }
 
+    /// Forgets the lists of the last leaf that was begun but those of some of its blocks, a bit for each number.
+    ///
+    /// # Panics
+    /// When no leaf was begun.
+    pub fn retain_blocks(&mut self, keep: u64) {
+        let leaf = self.leaves.last_mut().expect("a leaf was begun");
+        let mut block = leaf.mask;
+        leaf.mask &= keep;
+        let mut kept = leaf.first;
+        let mut end = kept.checked_sub(1).map_or(0, |before| self.ends[before]);
+        let mut start = end;
+        for list in leaf.first..self.ends.len() {
+            let range = std::mem::replace(&mut start, self.ends[list])..self.ends[list];
+            let is_kept = keep >> block.trailing_zeros() & 1 == 1;
+            block &= block - 1;
+            if is_kept {
+                let length = range.len();
+                self.positions.copy_within(range.clone(), end);
+                self.packed.copy_within(range, end);
+                end += length;
+                self.ends[kept] = end;
+                self.bases[kept] = self.bases[list];
+                kept += 1;
+            }
+        }
+        self.ends.truncate(kept);
+        self.bases.truncate(kept);
+        self.positions.truncate(end);
+        self.packed.truncate(end);
+    }
+
     #[inline]
     fn list(&self, leaf: usize, node: Ijk) -> Option<List<'_>> {
         let Leaf { mask, first } = *self.leaves.get(leaf)?;

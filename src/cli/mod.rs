@@ -34,6 +34,7 @@ use std::time::Instant;
 
 /// Parses the arguments, runs the command, and turns what comes of it into an exit code.
 pub fn main() -> ExitCode {
+    resources::return_large_blocks();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => return usage(&error),

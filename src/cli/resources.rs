@@ -1,10 +1,25 @@
-//! What the system says about memory. Linux tells in `/proc`; elsewhere nothing is known.
+//! Memory: what the system says of it, and that it gets back what is free. Linux tells in `/proc`; elsewhere nothing is known.
 
 use std::fs::read_to_string;
 
 /// The most memory that this process has had resident so far, in bytes; 0 where the system does not tell.
 pub(super) fn peak_rss() -> u64 {
     read_to_string("/proc/self/status").ok().and_then(|text| kilobytes(&text, "VmHWM:")).unwrap_or(0)
+}
+
+/// Has large blocks of memory returned to the system as soon as they are free, for the run that this process is for.
+///
+/// The allocator of glibc does so at first, but keeps all blocks of a size from when one of that size was free: 20 MB here,
+/// which is what the stages before have left when the mesh is put in order. Armadillo +2% at 512 has a peak of 204 MB
+/// this way and 229 MB without, and takes the same time; from 128 kB on it is 197 MB and 4% more time.
+pub(super) fn return_large_blocks() {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    {
+        const LARGE: libc::c_int = 2 << 20;
+        // SAFETY: it takes two numbers and changes a number of the allocator, under its lock. Whether that was possible
+        // makes no difference to anything but memory.
+        let _ = unsafe { libc::mallopt(libc::M_MMAP_THRESHOLD, LARGE) };
+    }
 }
 
 /// The value of a line like `VmHWM:   1234 kB`, in bytes.

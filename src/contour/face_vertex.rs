@@ -14,7 +14,7 @@
 //! ```
 
 use super::cell::{Corner, Edge, Face};
-use super::cells::{Cells, split};
+use super::cells::Cells;
 use super::grid::Grid;
 use super::numbering::{CellId, CellNumbers, locate};
 use super::sheets::{Case, Pair};
@@ -27,8 +27,9 @@ use crate::run::{Cancelled, RunSettings};
 use rayon::prelude::*;
 
 /// Which of the upper faces of an active cell have vertices.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Marks {
+    cell: CellId,
     /// Face vertices of the leaf's cells before this one: at most 6 x 512.
     before: u16,
     /// Bit 2 axis + pair.
@@ -38,6 +39,7 @@ struct Marks {
 /// The face vertices of all cells, and their numbers.
 #[derive(Debug)]
 pub struct FaceVertices {
+    /// Of the cells that have some, ascending: few of thousands.
     marks: Vec<Marks>,
     /// Per leaf the number of its first face vertex, and the number after the last at the end.
     first: Vec<u32>,
@@ -56,10 +58,7 @@ impl FaceVertices {
     /// along `axis`, on the pair with the crossing of `edge`, as an edge of `cell`; `None` if there is none.
     #[inline]
     pub fn get(&self, leaf: LeafId, cell: CellId, case: &Case, axis: Axis, edge: Edge) -> Option<u32> {
-        let marks = self.marks[cell.0 as usize];
-        if marks.pairs >> (2 * axis as u8) & 3 == 0 {
-            return None;
-        }
+        let marks = self.marks[self.marks.binary_search_by_key(&cell, |marks| marks.cell).ok()?];
         let bit = 2 * axis as usize + case.pair_of(Face::upper(axis), edge)?;
         if marks.pairs >> bit & 1 == 0 {
             return None;
@@ -78,38 +77,36 @@ pub fn face_vertices(
     vertices: &[[f64; 3]],
     run: &RunSettings,
 ) -> Result<FaceVertices, ContourError> {
-    let (signs, numbers) = (cells.signs, cells.numbers);
-    let leaves: Vec<LeafId> = signs.leaves().collect();
-    let mut marks = vec![Marks::default(); numbers.len()];
-    let slices = split(&mut marks, leaves.iter().map(|&leaf| numbers.range(leaf).len()));
-    let per_leaf: Vec<Vec<[f64; 3]>> = leaves
+    let leaves: Vec<LeafId> = cells.signs.leaves().collect();
+    let per_leaf: Vec<(Vec<Marks>, Vec<[f64; 3]>)> = leaves
         .par_iter()
-        .zip(slices)
         .with_min_len(16)
-        .map(|(&leaf, marks)| {
+        .map(|&leaf| {
             run.check()?;
-            Ok(in_leaf(cells, vertices, leaf, marks))
+            Ok(in_leaf(cells, vertices, leaf))
         })
         .collect::<Result<_, Cancelled>>()?;
-    let mut next = vertices.len() as u64;
+    let first_of_all = vertices.len() as u64;
     let mut first = Vec::with_capacity(per_leaf.len() + 1);
-    for positions in &per_leaf {
-        first.push(u32::try_from(next).map_err(|_| TooManyVertices)?);
-        next += positions.len() as u64;
+    let (mut marks, mut positions) = (Vec::new(), Vec::new());
+    for (of_leaf, in_leaf) in per_leaf {
+        first.push(u32::try_from(first_of_all + positions.len() as u64).map_err(|_| TooManyVertices)?);
+        marks.extend(of_leaf);
+        positions.extend(in_leaf);
     }
-    first.push(u32::try_from(next).map_err(|_| TooManyVertices)?);
-    Ok(FaceVertices { marks, first, positions: per_leaf.concat() })
+    first.push(u32::try_from(first_of_all + positions.len() as u64).map_err(|_| TooManyVertices)?);
+    Ok(FaceVertices { marks, first, positions })
 }
 
 /// The face vertices on the upper faces of the cells of one leaf.
-fn in_leaf(cells: &Cells<'_>, vertices: &[[f64; 3]], leaf: LeafId, marks: &mut [Marks]) -> Vec<[f64; 3]> {
+fn in_leaf(cells: &Cells<'_>, vertices: &[[f64; 3]], leaf: LeafId) -> (Vec<Marks>, Vec<[f64; 3]>) {
     let (signs, numbers): (&SignField, &CellNumbers) = (cells.signs, cells.numbers);
-    let mut positions = Vec::new();
-    for (marks, number) in marks.iter_mut().zip(bits(numbers.active(leaf))) {
-        marks.before = positions.len() as u16;
+    let (mut all, mut positions) = (Vec::new(), Vec::new());
+    for number in bits(numbers.active(leaf)) {
         let local = Ijk::in_leaf(Ijk::default(), number);
         let cell = numbers.id(leaf, number);
         let case = cells.case(cell);
+        let mut marks = Marks { cell, before: positions.len() as u16, pairs: 0 };
         for axis in Axis::ALL {
             let face = Face::upper(axis);
             let is_last = axis == Axis::X && local.0[0] == LEAF_DIM - 2 && signs.is_cut(leaf, 1);
@@ -143,8 +140,11 @@ fn in_leaf(cells: &Cells<'_>, vertices: &[[f64; 3]], leaf: LeafId, marks: &mut [
                 }
             }
         }
+        if marks.pairs != 0 {
+            all.push(marks);
+        }
     }
-    positions
+    (all, positions)
 }
 
 /// The edge of the next cell along `axis` that coincides with `edge` on the upper face across `axis`.

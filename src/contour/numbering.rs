@@ -57,7 +57,7 @@ impl CornerSigns {
 }
 
 /// The number of an active cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct CellId(pub u32);
 
 #[derive(Clone, Copy, Debug)]

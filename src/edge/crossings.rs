@@ -15,6 +15,9 @@ pub struct EdgeId(pub u32);
 /// The numbering of the intersected edges of a [`SignField`].
 #[derive(Clone, Debug, Default)]
 pub struct EdgeNumbers {
+    /// Per leaf how many leaves before it have edges; at the end how many have.
+    places: Vec<u32>,
+    /// The leaves with edges: a third of all.
     leaves: Vec<LeafEdges>,
     count: u32,
     is_open: bool,
@@ -28,6 +31,9 @@ struct LeafEdges {
     /// Edges of the leaf before word x of an axis.
     before: [[u16; 8]; 3],
 }
+
+/// Of a leaf without edges.
+const NO_EDGES: &LeafMask = &[0; 8];
 
 /// More than 2^32 - 1 grid edges change sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -58,7 +64,7 @@ impl EdgeNumbers {
         masks: impl IndexedParallelIterator<Item = [LeafMask; 3]>,
         is_open: bool,
     ) -> Result<Self, TooManyEdges> {
-        let mut leaves: Vec<LeafEdges> = masks
+        let leaves: Vec<Option<LeafEdges>> = masks
             .map(|masks| {
                 let mut before = [[0; 8]; 3];
                 let mut in_leaf = 0;
@@ -69,17 +75,24 @@ impl EdgeNumbers {
                     }
                 }
                 // A count for now; the prefix sums follow.
-                LeafEdges { masks, first: u32::from(in_leaf), before }
+                (in_leaf > 0).then_some(LeafEdges { masks, first: u32::from(in_leaf), before })
             })
             .collect();
+        let mut numbers = EdgeNumbers { is_open, ..EdgeNumbers::default() };
+        numbers.places.reserve_exact(leaves.len() + 1);
+        numbers.leaves.reserve_exact(leaves.iter().flatten().count());
         let mut count: u64 = 0;
-        for leaf in &mut leaves {
+        for leaf in leaves {
+            numbers.places.push(numbers.leaves.len() as u32);
+            let Some(mut leaf) = leaf else { continue };
             let next = count + u64::from(leaf.first);
             leaf.first = u32::try_from(count).map_err(|_| TooManyEdges)?;
+            numbers.leaves.push(leaf);
             count = next;
         }
-        let count = u32::try_from(count).map_err(|_| TooManyEdges)?;
-        Ok(EdgeNumbers { leaves, count, is_open })
+        numbers.places.push(numbers.leaves.len() as u32);
+        numbers.count = u32::try_from(count).map_err(|_| TooManyEdges)?;
+        Ok(numbers)
     }
 
     /// Whether edges that change sign may have no number.
@@ -98,19 +111,25 @@ impl EdgeNumbers {
     }
 
     /// The nodes of `leaf` whose edge along `axis` is intersected.
+    #[inline]
     pub fn mask(&self, leaf: LeafId, axis: Axis) -> &LeafMask {
-        &self.leaves[leaf.0 as usize].masks[axis as usize]
+        self.of_leaf(leaf).map_or(NO_EDGES, |edges| &edges.masks[axis as usize])
     }
 
     /// The numbers of the edges that start in `leaf`, a contiguous range.
+    #[inline]
     pub fn range(&self, leaf: LeafId) -> std::ops::Range<u32> {
-        let end = self.leaves.get(leaf.0 as usize + 1).map_or(self.count, |next| next.first);
-        self.leaves[leaf.0 as usize].first..end
+        let first = |leaf: usize| {
+            let edges = self.leaves.get(self.places[leaf] as usize);
+            edges.map_or(self.count, |edges| edges.first)
+        };
+        first(leaf.0 as usize)..first(leaf.0 as usize + 1)
     }
 
     /// The intersected edge from node `number` of `leaf` along `axis`, if there is one.
+    #[inline]
     pub fn get(&self, leaf: LeafId, axis: Axis, number: usize) -> Option<EdgeId> {
-        let edges = &self.leaves[leaf.0 as usize];
+        let edges = self.of_leaf(leaf)?;
         let (word, bit) = (number >> 6, number & 63);
         let mask = edges.masks[axis as usize][word];
         if mask >> bit & 1 == 0 {
@@ -118,6 +137,12 @@ impl EdgeNumbers {
         }
         let below = (mask & ((1 << bit) - 1)).count_ones();
         Some(EdgeId(edges.first + u32::from(edges.before[axis as usize][word]) + below))
+    }
+
+    #[inline]
+    fn of_leaf(&self, leaf: LeafId) -> Option<&LeafEdges> {
+        let [place, next] = [0, 1].map(|n| self.places[leaf.0 as usize + n]);
+        (place < next).then(|| &self.leaves[place as usize])
     }
 
     /// The intersected edges that start in `leaf`, as (axis, node number), in the order of their numbers.

@@ -40,7 +40,8 @@ pub(super) fn on_slab(
     let (crossings, edges) = solve_by(distance, &edge_settings, &signs, numbers, &near, run)?;
     statistics.edges += edges;
     let suspects = unseen::suspects(distance, r, lattice, slab, &signs, &near, run)?;
-    let NearTriangles { lists, .. } = near;
+    let NearTriangles { nodes, lists } = near;
+    drop(nodes);
     statistics.times.edges += started.elapsed().as_secs_f64();
 
     let started = Instant::now();
