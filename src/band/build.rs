@@ -12,6 +12,7 @@ use crate::slab::Slab;
 use crate::ssvh::Hit;
 use glam::DVec3;
 use rayon::prelude::*;
+use std::sync::{Mutex, PoisonError};
 
 /// What band to build.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +65,22 @@ pub fn build<E: From<Cancelled> + Send>(
     run: &RunSettings,
     sink: impl FnMut(LeafBatch) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
-    build_filtered(distance, settings, &FilterSettings::default(), run, sink)
+    build_kept(distance, settings, run, LeafBatch::clone, sink)
+}
+
+/// The same as [`build`], where `sink` gets what `keep` makes of each batch, on the thread that has filled it. The batch
+/// itself is filled again.
+///
+/// # Errors
+/// Cancellation, or what `sink` returns.
+pub fn build_kept<T: Send, E: From<Cancelled> + Send>(
+    distance: &SignedDistance,
+    settings: &BandSettings,
+    run: &RunSettings,
+    keep: impl Fn(&LeafBatch) -> T + Sync,
+    sink: impl FnMut(T) -> Result<(), E> + Send,
+) -> Result<FilterStatistics, E> {
+    build_with(distance, settings, &FilterSettings::default(), None, run, keep, sink)
 }
 
 /// The same as [`build`] with some filters off, or other bounding boxes. Leaves and their values are the
@@ -82,29 +98,31 @@ pub fn build_filtered<E: From<Cancelled> + Send>(
     run: &RunSettings,
     sink: impl FnMut(LeafBatch) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
-    build_with(distance, settings, filters, None, run, sink)
+    build_with(distance, settings, filters, None, run, LeafBatch::clone, sink)
 }
 
-fn build_with<E: From<Cancelled> + Send>(
+fn build_with<T: Send, E: From<Cancelled> + Send>(
     distance: &SignedDistance,
     settings: &BandSettings,
     filters: &FilterSettings,
     below: Option<Below<'_>>,
     run: &RunSettings,
-    mut sink: impl FnMut(LeafBatch) -> Result<(), E> + Send,
+    keep: impl Fn(&LeafBatch) -> T + Sync,
+    mut sink: impl FnMut(T) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
     let Plan { filter, boxes, mut statistics } = Plan::new(distance, settings, filters);
     let worker = Worker { filter, settings: *settings, below };
+    let scratch = Mutex::new(Vec::new());
     let phase = run.phase(Phase::Band, boxes.len() as u64);
     run.install(|| {
-        let mut ready: Vec<LeafBatch> = Vec::new();
+        let mut ready: Vec<T> = Vec::new();
         let mut batches = boxes.chunks(BOXES_PER_BATCH);
         loop {
             let next = batches.next();
             // The bridge takes the last batch while the workers fill the next one.
             let (sunk, filled) = rayon::join(
                 || ready.into_iter().try_for_each(&mut sink),
-                || next.map(|boxes| worker.fill(boxes, &phase)),
+                || next.map(|boxes| worker.fill(boxes, &scratch, &keep, &phase)),
             );
             sunk?;
             let Some(filled) = filled else { break };
@@ -142,7 +160,7 @@ pub fn build_below<E: From<Cancelled> + Send>(
     run: &RunSettings,
     sink: impl FnMut(LeafBatch) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
-    build_with(distance, settings, &FilterSettings::default(), Some(below), run, sink)
+    build_with(distance, settings, &FilterSettings::default(), Some(below), run, LeafBatch::clone, sink)
 }
 
 /// The work of a band: which boxes to go through with which filters.
@@ -212,42 +230,58 @@ pub(super) struct Worker<'a> {
     pub(super) below: Option<Below<'a>>,
 }
 
+/// The working memory of a thread: what was used for one box is used for the next.
+#[derive(Default)]
+struct Scratch {
+    narrowing: Narrowing,
+    batch: LeafBatch,
+}
+
 impl Worker<'_> {
-    fn fill(
+    fn fill<T: Send>(
         &self,
         boxes: &[Block],
+        scratch: &Mutex<Vec<Scratch>>,
+        keep: impl Fn(&LeafBatch) -> T + Sync,
         phase: &crate::run::PhaseGuard,
-    ) -> Result<(Vec<LeafBatch>, FilterStatistics), Cancelled> {
-        let filled: Vec<(LeafBatch, FilterStatistics)> = boxes
-            .par_iter()
-            .with_max_len(1)
-            .map_init(Narrowing::default, |narrowing, &block| {
-                phase.advance(1)?;
-                Ok(self.bounding_box(block, narrowing))
-            })
-            .collect::<Result<_, Cancelled>>()?;
-        let mut batches = Vec::with_capacity(filled.len());
+    ) -> Result<(Vec<T>, FilterStatistics), Cancelled> {
+        // As many as there are threads at most, whatever became of one that held the lock.
+        let pool = || scratch.lock().unwrap_or_else(PoisonError::into_inner);
+        let in_box = |&block: &Block| {
+            phase.advance(1)?;
+            let idle = pool().pop();
+            let mut own: Scratch = idle.unwrap_or_default();
+            let Scratch { narrowing, batch } = &mut own;
+            batch.clear();
+            let counts = self.bounding_box(block, narrowing, batch);
+            let is_kept = !batch.is_empty() || !batch.inside_blocks.is_empty();
+            let kept = is_kept.then(|| keep(batch));
+            pool().push(own);
+            Ok((kept, counts))
+        };
+        let filled: Vec<(Option<T>, FilterStatistics)> =
+            boxes.par_iter().with_max_len(1).map(in_box).collect::<Result<_, Cancelled>>()?;
         let mut statistics = FilterStatistics::default();
-        for (batch, counts) in filled {
-            if !batch.is_empty() || !batch.inside_blocks.is_empty() {
-                batches.push(batch);
-            }
-            statistics += counts;
-        }
-        Ok((batches, statistics))
+        filled.iter().for_each(|&(_, counts)| statistics += counts);
+        Ok((filled.into_iter().filter_map(|(kept, _)| kept).collect(), statistics))
     }
 
-    fn bounding_box(&self, block: Block, narrowing: &mut Narrowing) -> (LeafBatch, FilterStatistics) {
+    /// Appends the leaves of a box to `batch`.
+    fn bounding_box(
+        &self,
+        block: Block,
+        narrowing: &mut Narrowing,
+        batch: &mut LeafBatch,
+    ) -> FilterStatistics {
         let mut statistics = FilterStatistics::default();
-        let mut batch = LeafBatch::default();
         let mut kept: Vec<(Ijk, u32, f64)> = Vec::new();
         match self.filter.bounding_box(block, &mut statistics) {
             Verdict::Outside => {}
-            Verdict::Inside => self.push_inside(block, &mut batch),
+            Verdict::Inside => self.push_inside(block, batch),
             Verdict::Kept { triangle, .. } if self.filter.settings.octree == Switch::Off => {
                 for origin in block.leaves().filter(|&o| self.settings.slab.computes(o, LEAF_DIM)) {
                     let mut of_leaf = FilterStatistics::default();
-                    self.whole_leaf(origin, triangle, &mut batch, &mut of_leaf);
+                    self.whole_leaf(origin, triangle, batch, &mut of_leaf);
                     if self.settings.slab.owns(origin) {
                         statistics += of_leaf;
                     }
@@ -261,7 +295,7 @@ impl Worker<'_> {
                 self.filter.octree(block, triangle, LEAF_DIM, &mut statistics, &mut |block, verdict| {
                     match verdict {
                         Verdict::Outside => {}
-                        Verdict::Inside => self.push_inside(block, &mut batch),
+                        Verdict::Inside => self.push_inside(block, batch),
                         Verdict::Kept { triangle, distance } => {
                             kept.push((block.origin, triangle, distance));
                         }
@@ -272,15 +306,15 @@ impl Worker<'_> {
         for (origin, triangle, distance) in kept {
             let mut of_leaf = FilterStatistics::default();
             if self.filter.settings.candidates == Switch::On {
-                self.leaf_by_lists(origin, triangle, distance, narrowing, &mut batch, &mut of_leaf);
+                self.leaf_by_lists(origin, triangle, distance, narrowing, batch, &mut of_leaf);
             } else {
-                self.leaf_by_queries(origin, triangle, &mut batch, &mut of_leaf);
+                self.leaf_by_queries(origin, triangle, batch, &mut of_leaf);
             }
             if self.settings.slab.owns(origin) {
                 statistics += of_leaf;
             }
         }
-        (batch, statistics)
+        statistics
     }
 
     /// Adds a block on the negative side, beyond the band. Where the mesh is open, that says nothing.

@@ -30,6 +30,32 @@ impl LeafBatch {
         self.origins.len()
     }
 
+    /// A copy that has no lists.
+    pub fn without_lists(&self) -> LeafBatch {
+        let LeafBatch { origins, values, active, inside, closest, inside_blocks, lists: _ } = self;
+        LeafBatch {
+            origins: origins.clone(),
+            values: values.clone(),
+            active: active.clone(),
+            inside: inside.clone(),
+            closest: closest.clone(),
+            inside_blocks: inside_blocks.clone(),
+            lists: BlockLists::default(),
+        }
+    }
+
+    /// Takes all out; the room stays.
+    pub fn clear(&mut self) {
+        let LeafBatch { origins, values, active, inside, closest, inside_blocks, lists } = self;
+        origins.clear();
+        values.clear();
+        active.clear();
+        inside.clear();
+        closest.clear();
+        inside_blocks.clear();
+        lists.clear();
+    }
+
     /// Whether there is no leaf.
     pub fn is_empty(&self) -> bool {
         self.origins.is_empty()

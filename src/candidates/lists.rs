@@ -48,13 +48,14 @@ impl BlockLists {
         self.leaves.is_empty()
     }
 
-    /// Gives back room that is not used.
-    pub fn shrink_to_fit(&mut self) {
-        self.leaves.shrink_to_fit();
-        self.ends.shrink_to_fit();
-        self.bases.shrink_to_fit();
-        self.positions.shrink_to_fit();
-        self.packed.shrink_to_fit();
+    /// Takes all out; the room stays.
+    pub fn clear(&mut self) {
+        let BlockLists { leaves, ends, bases, positions, packed } = self;
+        leaves.clear();
+        ends.clear();
+        bases.clear();
+        positions.clear();
+        packed.clear();
     }
 
     /// Begins the next leaf.

@@ -15,6 +15,9 @@ use crate::run::{Cancelled, PhaseGuard};
 use crate::slab::Slab;
 use rayon::prelude::*;
 
+/// One in so many vertices has room beside those of the cells.
+const SPARE: usize = 64;
+
 /// The active cells with everything that is known of them.
 pub struct Cells<'a> {
     /// The signs of the nodes.
@@ -80,7 +83,11 @@ impl<'a> Cells<'a> {
         let features = Features::new(Vec::new(), 0, bend);
         let mut cells = Cells { signs, crossings, grid, slab, numbers, surface, features, cases: Vec::new() };
         let mut cases = vec![CellCase::default(); numbers.len()];
-        let mut vertices = vec![[0.0; 3]; numbers.vertices() as usize];
+        // Face and edge vertices come after them, and the whole need not move for those few. Room that is not used is not
+        // touched.
+        let count = numbers.vertices() as usize;
+        let mut vertices = vec![[0.0; 3]; count + count / SPARE];
+        vertices.truncate(count);
         let leaves: Vec<LeafId> = signs.leaves().collect();
         let case_slices = split(&mut cases, leaves.iter().map(|&leaf| numbers.range(leaf).len()));
         let vertex_slices = split(&mut vertices, leaves.iter().map(|&leaf| numbers.vertex_range(leaf).len()));

@@ -20,13 +20,13 @@ use rayon::prelude::*;
 struct LeafOutput {
     /// How many triangles there are.
     count: usize,
-    /// All of them, where they are more than their slots.
-    too_many: Option<Triangles>,
+    /// All of them, where they are more than their slots. Few leaves have that, and there is an output for each leaf.
+    too_many: Option<Box<Triangles>>,
     edge_vertices: Vec<[f64; 3]>,
     /// Feature vertices of polygons that are far from the surface.
     far: Vec<u32>,
     /// Polygons.
-    quads: u64,
+    quads: u32,
 }
 
 /// The mesh, and what is known of its parts.
@@ -101,7 +101,7 @@ pub fn triangulate(
     runs.retain(|run| !run.numbers.is_empty());
     let far = outputs.iter_mut().map(|output| std::mem::take(&mut output.far)).collect();
     let owned = || outputs.iter().zip(&leaves).filter(|(_, leaf)| cells.owns(**leaf));
-    let quads: u64 = owned().map(|(output, _)| output.quads).sum();
+    let quads: u64 = owned().map(|(output, _)| u64::from(output.quads)).sum();
     let split: u64 = owned().map(|(output, _)| output.edge_vertices.len() as u64).sum();
     let face_vertices = owned().map(|(_, &leaf)| faces.range(leaf).len() as u64).sum();
     let statistics = ContourStatistics {
@@ -179,7 +179,8 @@ fn in_leaf(
             output.quads += 1;
         },
     );
-    (output.count, output.too_many) = slots.finish();
+    let (count, too_many) = slots.finish();
+    (output.count, output.too_many) = (count, too_many.map(Box::new));
     output
 }
 

@@ -25,6 +25,7 @@ pub struct EdgeNumbers {
 
 #[derive(Clone, Copy, Debug)]
 struct LeafEdges {
+    leaf: LeafId,
     masks: [LeafMask; 3],
     /// The number of the first edge of the leaf.
     first: u32,
@@ -64,35 +65,33 @@ impl EdgeNumbers {
         masks: impl IndexedParallelIterator<Item = [LeafMask; 3]>,
         is_open: bool,
     ) -> Result<Self, TooManyEdges> {
-        let leaves: Vec<Option<LeafEdges>> = masks
-            .map(|masks| {
-                let mut before = [[0; 8]; 3];
-                let mut in_leaf = 0;
-                for (mask, before) in masks.iter().zip(&mut before) {
-                    for (word, before) in mask.iter().zip(before) {
-                        *before = in_leaf;
-                        in_leaf += word.count_ones() as u16;
-                    }
+        let count = masks.len();
+        let of_leaf = |(leaf, masks): (usize, [LeafMask; 3])| {
+            let mut before = [[0; 8]; 3];
+            let mut in_leaf = 0;
+            for (mask, before) in masks.iter().zip(&mut before) {
+                for (word, before) in mask.iter().zip(before) {
+                    *before = in_leaf;
+                    in_leaf += word.count_ones() as u16;
                 }
-                // A count for now; the prefix sums follow.
-                (in_leaf > 0).then_some(LeafEdges { masks, first: u32::from(in_leaf), before })
-            })
-            .collect();
-        let mut numbers = EdgeNumbers { is_open, ..EdgeNumbers::default() };
-        numbers.places.reserve_exact(leaves.len() + 1);
-        numbers.leaves.reserve_exact(leaves.iter().flatten().count());
-        let mut count: u64 = 0;
-        for leaf in leaves {
-            numbers.places.push(numbers.leaves.len() as u32);
-            let Some(mut leaf) = leaf else { continue };
-            let next = count + u64::from(leaf.first);
-            leaf.first = u32::try_from(count).map_err(|_| TooManyEdges)?;
-            numbers.leaves.push(leaf);
-            count = next;
+            }
+            // A count for now; the prefix sums follow.
+            let edges = LeafEdges { leaf: LeafId(leaf as u32), masks, first: u32::from(in_leaf), before };
+            (in_leaf > 0).then_some(edges)
+        };
+        let mut leaves: Vec<LeafEdges> = masks.enumerate().filter_map(of_leaf).collect();
+        let mut places = Vec::with_capacity(count + 1);
+        let mut edges: u64 = 0;
+        for (place, leaf) in leaves.iter_mut().enumerate() {
+            // For the leaves before that have none, too.
+            places.resize(leaf.leaf.0 as usize + 1, place as u32);
+            let next = edges + u64::from(leaf.first);
+            leaf.first = u32::try_from(edges).map_err(|_| TooManyEdges)?;
+            edges = next;
         }
-        numbers.places.push(numbers.leaves.len() as u32);
-        numbers.count = u32::try_from(count).map_err(|_| TooManyEdges)?;
-        Ok(numbers)
+        places.resize(count + 1, leaves.len() as u32);
+        let count = u32::try_from(edges).map_err(|_| TooManyEdges)?;
+        Ok(EdgeNumbers { places, leaves, count, is_open })
     }
 
     /// Whether edges that change sign may have no number.

@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::filter::FilterStatistics;
 use crate::lattice::Ijk;
 use crate::run::RunSettings;
+use crate::slab::Slab;
 
 /// The band around the offset surface.
 pub(crate) struct NarrowBand {
@@ -64,6 +65,35 @@ pub(crate) fn store(
     Ok(Parts::collect(distance, settings, Next::Nothing, Some(stored), run)?.1)
 }
 
+/// What is kept of a batch of leaves.
+struct Kept {
+    origins: Vec<Ijk>,
+    inside_blocks: Vec<(Ijk, i32)>,
+    /// Leaves and active nodes that the slab owns.
+    owned: [u64; 2],
+    /// For edges and a contour: which nodes are inside, their closest triangles, and those near the edges.
+    near: Option<(Vec<LeafMask>, PartTriangles, BlockLists)>,
+    /// For OpenVDB.
+    stored: Option<LeafBatch>,
+}
+
+impl Kept {
+    fn new(batch: &LeafBatch, slab: Slab, next: Next, is_stored: bool) -> Kept {
+        let own = batch.origins.iter().zip(&batch.active).filter(|leaf| slab.owns(*leaf.0));
+        let owned = own.fold([0; 2], |[leaves, nodes], (_, active)| {
+            [leaves + 1, nodes + active.iter().map(|word| u64::from(word.count_ones())).sum::<u64>()]
+        });
+        let near = || (batch.inside.clone(), PartTriangles::new(&batch.closest), batch.lists.clone());
+        Kept {
+            origins: batch.origins.clone(),
+            inside_blocks: batch.inside_blocks.clone(),
+            owned,
+            near: (next == Next::Contour).then(near),
+            stored: is_stored.then(|| batch.without_lists()),
+        }
+    }
+}
+
 /// Leaves as they come out of the filters.
 #[derive(Default)]
 struct Parts {
@@ -82,23 +112,24 @@ impl Parts {
         mut stored: Option<&mut StoredBand>,
         run: &RunSettings,
     ) -> Result<(Parts, BandCounts), Error> {
+        let slab = settings.slab;
         let mut parts = Parts::default();
         let mut counts = BandCounts::default();
         let mut inside_blocks = Vec::new();
-        let mut take = |batch: LeafBatch, parts: &mut Parts| -> Result<(), Error> {
-            if let Some(stored) = &mut stored {
-                stored.insert(&batch, settings.slab)?;
+        let is_stored = stored.is_some();
+        let keep = |batch: &LeafBatch| Kept::new(batch, slab, next, is_stored);
+        let mut take = |kept: Kept, parts: &mut Parts| -> Result<(), Error> {
+            if let (Some(stored), Some(batch)) = (&mut stored, &kept.stored) {
+                stored.insert(batch, slab)?;
             }
-            for (_, active) in batch.origins.iter().zip(&batch.active).filter(|l| settings.slab.owns(*l.0)) {
-                counts.leaves += 1;
-                counts.active_voxels += active.iter().map(|word| u64::from(word.count_ones())).sum::<u64>();
-            }
-            parts.take(batch, next);
+            counts.leaves += kept.owned[0];
+            counts.active_voxels += kept.owned[1];
+            parts.take(kept);
             Ok(())
         };
-        counts.filter = band::build(distance, settings, run, |batch| {
-            inside_blocks.extend_from_slice(&batch.inside_blocks);
-            take(batch, &mut parts)
+        let filter = band::build_kept(distance, settings, run, keep, |kept| {
+            inside_blocks.extend_from_slice(&kept.inside_blocks);
+            take(kept, &mut parts)
         })?;
         let jumps = run.install(|| {
             parts.blocks = InsideBlocks::new(&inside_blocks);
@@ -106,22 +137,20 @@ impl Parts {
             band::leaves_at_jumps(&parts.origins, &inside_blocks, settings, inside_at)
         });
         if !jumps.is_empty() {
-            take(jumps, &mut parts)?;
+            take(keep(&jumps), &mut parts)?;
         }
+        counts.filter = filter;
         Ok((parts, counts))
     }
 
-    fn take(&mut self, batch: LeafBatch, next: Next) {
-        self.origins.extend_from_slice(&batch.origins);
-        if next == Next::Contour {
-            self.inside.extend(batch.inside);
-            self.closest.push(PartTriangles::new(&batch.closest));
-            // Leaves that were added where the sign jumps have no lists: edges there ask the hierarchy.
-            if !batch.lists.is_empty() {
-                let mut lists = batch.lists;
-                lists.shrink_to_fit();
-                self.lists.push((batch.origins, lists));
-            }
+    fn take(&mut self, kept: Kept) {
+        self.origins.extend_from_slice(&kept.origins);
+        let Some((inside, closest, lists)) = kept.near else { return };
+        self.inside.extend(inside);
+        self.closest.push(closest);
+        // Leaves that were added where the sign jumps have no lists: edges there ask the hierarchy.
+        if !lists.is_empty() {
+            self.lists.push((kept.origins, lists));
         }
     }
 }
