@@ -2,9 +2,8 @@
 //! closed, or is and intersects itself: there the offset solid is closed along the jump.
 
 use super::{BandSettings, LeafBatch};
-use crate::candidates::BlockLists;
+use crate::candidates::{BlockLists, LeafIndex};
 use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE};
-use std::collections::HashSet;
 
 /// Uniform inside leaves that touch, across a face, a region which is outside as a whole. Without them the
 /// sign change between the two would lie in no leaf. `leaves` are those of the band, `inside_blocks` what
@@ -15,13 +14,13 @@ pub fn leaves_at_jumps(
     settings: &BandSettings,
     inside_at: impl FnOnce(&[Ijk]) -> Vec<bool>,
 ) -> LeafBatch {
-    let leaves: HashSet<Ijk> = leaves.iter().copied().collect();
+    let leaves = LeafIndex::new(leaves);
     let mut pairs: Vec<(Ijk, Ijk)> = Vec::new();
     for &(origin, side) in inside_blocks {
         for (leaf, neighbour) in border(origin, side) {
             // Beyond what is computed, nothing is known.
             let is_computed = [leaf, neighbour].iter().all(|&l| settings.slab.computes(l, LEAF_DIM));
-            if is_computed && !leaves.contains(&neighbour) {
+            if is_computed && leaves.get(neighbour).is_none() {
                 pairs.push((leaf, neighbour));
             }
         }

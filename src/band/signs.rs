@@ -71,8 +71,9 @@ impl SignField {
         missing: impl FnOnce(&[Ijk]) -> Result<Vec<bool>, E>,
     ) -> Result<Self, E> {
         assert_eq!(origins.len(), inside.len(), "one mask for each leaf");
-        let mut all: Vec<(Ijk, LeafMask)> = origins.iter().copied().zip(inside.iter().copied()).collect();
-        all.sort_unstable_by_key(|&(origin, _)| origin);
+        // Sorted by number: masks are ten times as large as what tells their order.
+        let mut all: Vec<(Ijk, u32)> = origins.iter().copied().zip(0..).collect();
+        all.par_sort_unstable();
         assert!(all.windows(2).all(|pair| pair[0].0 != pair[1].0), "a leaf was given twice");
 
         let band: Vec<Ijk> = all.iter().map(|&(origin, _)| origin).collect();
@@ -90,12 +91,18 @@ impl SignField {
         let ring_inside = missing(&ring)?;
         assert_eq!(ring.len(), ring_inside.len(), "one sign for each missing leaf");
 
-        all.extend(ring.into_iter().zip(ring_inside.into_iter().map(|i| if i { [!0; 8] } else { [0; 8] })));
-        all.par_sort_unstable_by_key(|&(origin, _)| origin);
-        let (origins, inside): (Vec<Ijk>, Vec<LeafMask>) = all.into_iter().unzip();
+        // Uniform ones are numbered on from the others.
+        let count = inside.len() as u32;
+        all.extend(ring.into_iter().zip(ring_inside.into_iter().map(|i| count + u32::from(i))));
+        all.par_sort_unstable();
+        let mask =
+            |n: u32| inside.get(n as usize).copied().unwrap_or(if n == count { [0; 8] } else { [!0; 8] });
+        let inside = all.par_iter().with_min_len(256).map(|&(_, n)| mask(n)).collect();
+        let origins: Vec<Ijk> = all.into_iter().map(|(origin, _)| origin).collect();
         let by_slot: Vec<Vec<u32>> =
             (0..27usize).into_par_iter().map(|slot| find_shifted(&origins, slot)).collect();
-        let neighbours = (0..origins.len()).map(|n| std::array::from_fn(|slot| by_slot[slot][n])).collect();
+        let around = |n: usize| std::array::from_fn(|slot| by_slot[slot][n]);
+        let neighbours = (0..origins.len()).into_par_iter().with_min_len(256).map(around).collect();
         Ok(SignField { origins, inside, neighbours, slab })
     }
 

@@ -38,7 +38,7 @@ pub struct Cells<'a> {
 }
 
 /// The case of an active cell, and its vertices.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, bytemuck::Zeroable)]
 pub struct CellCase {
     /// The number of the vertex of sheet 0; the other sheets' follow.
     pub first_vertex: u32,
@@ -82,7 +82,7 @@ impl<'a> Cells<'a> {
         let bend = surface.map_or(Bend::UNKNOWN, Bend::of);
         let features = Features::new(Vec::new(), 0, bend);
         let mut cells = Cells { signs, crossings, grid, slab, numbers, surface, features, cases: Vec::new() };
-        let mut cases = vec![CellCase::default(); numbers.len()];
+        let mut cases: Vec<CellCase> = bytemuck::zeroed_vec(numbers.len());
         // Face and edge vertices come after them, and the whole need not move for those few. Room that is not used is not
         // touched.
         let count = numbers.vertices() as usize;
@@ -104,7 +104,7 @@ impl<'a> Cells<'a> {
         cells.cases = cases;
         let mut statistics = ContourStatistics::default();
         let mut wishes = Vec::with_capacity(placed.len());
-        let mut features = Vec::new();
+        let mut features = Vec::with_capacity(placed.iter().map(|own| own.features.len()).sum());
         for (LeafVertices { wishes: wished, features: found, counts }, &leaf) in
             placed.into_iter().zip(&leaves)
         {

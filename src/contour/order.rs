@@ -3,7 +3,7 @@
 //! While it is made, a mesh has its vertices by kind, and what changes add at the end. That order depends on the whole
 //! lattice. In the order of leaves, the vertices and triangles of some leaves stand together, wherever the rest is made.
 
-use super::rounds::{GONE, LeafMesh};
+use super::rounds::LeafMesh;
 use crate::band::LeafId;
 use crate::mesh::TriMesh;
 use rayon::prelude::*;
@@ -91,7 +91,7 @@ impl LeafMesh {
         for (leaf, count) in counts.iter().enumerate() {
             ends[leaf + 1] = ends[leaf] + count;
         }
-        let mut triangles = vec![GONE; ends[leaves]];
+        let mut triangles = vec![[0; 3]; ends[leaves]];
         let parts = super::cells::split(&mut triangles, counts.into_iter());
         parts.into_par_iter().enumerate().with_min_len(16).for_each(|(leaf, part)| {
             for (to, number) in part.iter_mut().zip(of_leaf(leaf)) {

@@ -183,7 +183,7 @@ fn kind(edges: EdgeSet) -> SheetKind {
 }
 
 /// The number of a row of the [`CaseTable`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Zeroable)]
 pub struct CaseId(u16);
 
 /// All masks of inside corners with all choices for their ambiguous faces.

@@ -6,6 +6,7 @@
 
 use crate::band::{LeafId, LeafMask, SignField};
 use crate::lattice::Axis;
+use bytemuck::Zeroable;
 use rayon::prelude::*;
 
 /// The number of an intersected edge.
@@ -181,7 +182,7 @@ impl Iterator for Bits<'_> {
 }
 
 /// One crossing: a sample of Hermite data.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Zeroable)]
 pub struct Crossing {
     /// Position along the edge, in voxels from its lower node, in 0..=1.
     pub t: f64,

@@ -86,7 +86,8 @@ pub fn solve_by(
 ) -> Result<(Crossings, EdgeStatistics), Cancelled> {
     let EdgeSettings { lattice, r, method, slab } = *settings;
     let solver = Solver { distance, r, voxel: lattice.voxel };
-    let mut samples = vec![Crossing { t: 0.0, normal: [0.0; 3], triangle: 0 }; numbers.len()];
+    // Not touched before the threads do.
+    let mut samples: Vec<Crossing> = bytemuck::zeroed_vec(numbers.len());
     let mut rest: &mut [Crossing] = &mut samples;
     let mut tasks: Vec<(LeafId, &mut [Crossing])> = Vec::new();
     for leaf in signs.leaves() {
