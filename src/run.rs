@@ -87,6 +87,10 @@ impl CancelToken {
     }
 }
 
+/// Leaves that a thread takes on at a time at most. Left alone, rayon cuts a loop into a few parts for each thread, and all
+/// wait for the last part: with two threads for up to a tenth of the loop.
+pub const SHARE: usize = 64;
+
 /// Thread pool, cancel token and progress sink of a run.
 #[derive(Clone)]
 pub struct RunSettings {

@@ -52,8 +52,9 @@ const BOXES_ALONG_AXIS: i32 = 8;
 /// between two layers of cells. Far below the tolerance of edge intersections.
 const ON_SURFACE: f64 = 1e-9;
 
-/// Bounding boxes worked off together; the leaves of two such batches are in memory at a time.
-const BOXES_PER_BATCH: usize = 64;
+/// Bounding boxes worked off together at most, for a band whose leaves are handed on as they are: those of two such batches
+/// are in memory at a time.
+pub const BOXES_PER_BATCH: usize = 64;
 
 /// Builds the band around the offset surface and hands it, batch by batch in a fixed order, to `sink`.
 ///
@@ -65,22 +66,24 @@ pub fn build<E: From<Cancelled> + Send>(
     run: &RunSettings,
     sink: impl FnMut(LeafBatch) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
-    build_kept(distance, settings, run, LeafBatch::clone, sink)
+    build_kept(distance, settings, BOXES_PER_BATCH, run, LeafBatch::clone, sink)
 }
 
 /// The same as [`build`], where `sink` gets what `keep` makes of each batch, on the thread that has filled it. The batch
-/// itself is filled again.
+/// itself is filled again. After `at_a_time` boxes the threads wait for each other.
 ///
 /// # Errors
 /// Cancellation, or what `sink` returns.
 pub fn build_kept<T: Send, E: From<Cancelled> + Send>(
     distance: &SignedDistance,
     settings: &BandSettings,
+    at_a_time: usize,
     run: &RunSettings,
     keep: impl Fn(&LeafBatch) -> T + Sync,
     sink: impl FnMut(T) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
-    build_with(distance, settings, &FilterSettings::default(), None, run, keep, sink)
+    let plan = Plan::new(distance, settings, &FilterSettings::default());
+    build_with(plan, settings, None, at_a_time, run, keep, sink)
 }
 
 /// The same as [`build`] with some filters off, or other bounding boxes. Leaves and their values are the
@@ -98,25 +101,26 @@ pub fn build_filtered<E: From<Cancelled> + Send>(
     run: &RunSettings,
     sink: impl FnMut(LeafBatch) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
-    build_with(distance, settings, filters, None, run, LeafBatch::clone, sink)
+    let plan = Plan::new(distance, settings, filters);
+    build_with(plan, settings, None, BOXES_PER_BATCH, run, LeafBatch::clone, sink)
 }
 
 fn build_with<T: Send, E: From<Cancelled> + Send>(
-    distance: &SignedDistance,
+    plan: Plan<'_>,
     settings: &BandSettings,
-    filters: &FilterSettings,
     below: Option<Below<'_>>,
+    at_a_time: usize,
     run: &RunSettings,
     keep: impl Fn(&LeafBatch) -> T + Sync,
     mut sink: impl FnMut(T) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
-    let Plan { filter, boxes, mut statistics } = Plan::new(distance, settings, filters);
+    let Plan { filter, boxes, mut statistics } = plan;
     let worker = Worker { filter, settings: *settings, below };
     let scratch = Mutex::new(Vec::new());
     let phase = run.phase(Phase::Band, boxes.len() as u64);
     run.install(|| {
         let mut ready: Vec<T> = Vec::new();
-        let mut batches = boxes.chunks(BOXES_PER_BATCH);
+        let mut batches = boxes.chunks(at_a_time);
         loop {
             let next = batches.next();
             // The bridge takes the last batch while the workers fill the next one.
@@ -160,7 +164,8 @@ pub fn build_below<E: From<Cancelled> + Send>(
     run: &RunSettings,
     sink: impl FnMut(LeafBatch) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
-    build_with(distance, settings, &FilterSettings::default(), Some(below), run, LeafBatch::clone, sink)
+    let plan = Plan::new(distance, settings, &FilterSettings::default());
+    build_with(plan, settings, Some(below), BOXES_PER_BATCH, run, LeafBatch::clone, sink)
 }
 
 /// The work of a band: which boxes to go through with which filters.

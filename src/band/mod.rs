@@ -14,7 +14,9 @@ mod signs;
 mod tests;
 
 pub use crate::lattice::{Axis, Ijk, LEAF_DIM, LEAF_SIZE, Lattice};
-pub use build::{BandSettings, Below, build, build_below, build_filtered, build_kept, grid_nodes};
+pub use build::{
+    BOXES_PER_BATCH, BandSettings, Below, build, build_below, build_filtered, build_kept, grid_nodes,
+};
 pub use count::count_queries;
 pub use inside::InsideBlocks;
 pub use jumps::leaves_at_jumps;

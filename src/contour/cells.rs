@@ -11,7 +11,7 @@ use super::sheets::{Case, CaseId, CaseTable};
 use super::surface::Surface;
 use crate::band::{LeafId, SignField};
 use crate::edge::Crossings;
-use crate::run::{Cancelled, PhaseGuard};
+use crate::run::{Cancelled, PhaseGuard, SHARE};
 use crate::slab::Slab;
 use rayon::prelude::*;
 
@@ -96,6 +96,7 @@ impl<'a> Cells<'a> {
             .zip(case_slices)
             .zip(vertex_slices)
             .with_min_len(16)
+            .with_max_len(SHARE)
             .map(|((&leaf, cases), vertices)| {
                 phase.advance(1)?;
                 Ok(LeafVertices::place(&cells, leaf, cases, vertices))
@@ -105,13 +106,13 @@ impl<'a> Cells<'a> {
         let mut statistics = ContourStatistics::default();
         let mut wishes = Vec::with_capacity(placed.len());
         let mut features = Vec::with_capacity(placed.iter().map(|own| own.features.len()).sum());
-        for (LeafVertices { wishes: wished, features: found, counts }, &leaf) in
-            placed.into_iter().zip(&leaves)
-        {
-            wishes.push(wished);
-            features.extend(found);
+        for (own, &leaf) in placed.into_iter().zip(&leaves) {
+            wishes.push(own.wishes);
+            features.extend(own.features);
             if cells.owns(leaf) {
-                statistics += counts;
+                statistics.cells += numbers.range(leaf).len() as u64;
+                statistics.several_sheets += u64::from(own.several_sheets);
+                statistics.clamped += u64::from(own.clamped);
             }
         }
         cells.features = Features::new(features, vertices.len(), bend);

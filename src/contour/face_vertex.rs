@@ -23,7 +23,7 @@ use super::{ContourError, TooManyVertices};
 use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, SignField};
 use crate::edge::{Crossings, bits};
 use crate::geom::predicates::orient3d;
-use crate::run::{Cancelled, RunSettings};
+use crate::run::{Cancelled, RunSettings, SHARE};
 use rayon::prelude::*;
 
 /// Which of the upper faces of an active cell have vertices.
@@ -81,6 +81,7 @@ pub fn face_vertices(
     let per_leaf: Vec<(Vec<Marks>, Vec<[f64; 3]>)> = leaves
         .par_iter()
         .with_min_len(16)
+        .with_max_len(SHARE)
         .map(|&leaf| {
             run.check()?;
             Ok(in_leaf(cells, vertices, leaf))

@@ -1,6 +1,5 @@
 //! The vertices of the cells of one leaf.
 
-use super::ContourStatistics;
 use super::cells::{CellCase, Cells};
 use super::features::FeatureVertex;
 use super::leaf_crossings::LeafCrossings;
@@ -20,8 +19,10 @@ pub struct LeafVertices {
     pub wishes: Vec<Wish>,
     /// Vertices on creases and corners.
     pub features: Vec<FeatureVertex>,
-    /// Counts of cells and vertices by kind.
-    pub counts: ContourStatistics,
+    /// Cells with more than one sheet. Small numbers: most leaves have no cells, and there is this for all.
+    pub several_sheets: u16,
+    /// See [`ContourStatistics::clamped`](super::ContourStatistics::clamped).
+    pub clamped: u16,
 }
 
 /// A cell that waits for its vertices.
@@ -53,8 +54,7 @@ impl LeafVertices {
         cases: &mut [CellCase],
         vertices: &mut [[f64; 3]],
     ) -> LeafVertices {
-        let counts = ContourStatistics { cells: cases.len() as u64, ..Default::default() };
-        let found = LeafVertices { counts, ..LeafVertices::default() };
+        let found = LeafVertices::default();
         if cases.is_empty() {
             return found;
         }
@@ -106,7 +106,7 @@ impl Placer<'_> {
         } else {
             // Vertices are numbered in the order of their cells, and features found in that order.
             self.finish();
-            self.found.counts.several_sheets += 1;
+            self.found.several_sheets += 1;
             for sheet in 0..cell.case.sheets().len() {
                 self.place_one(cell, sheet);
             }
@@ -135,7 +135,7 @@ impl Placer<'_> {
         let placed = vertex::place(grid, at, case, sheet, crossing, *surface);
         let number = first + sheet;
         self.vertices[number] = placed.position;
-        self.found.counts.clamped += u64::from(placed.placement == Placement::Clamped);
+        self.found.clamped += u16::from(placed.placement == Placement::Clamped);
         let Some(feature) = placed.feature else { return };
         let vertex = (numbers.vertex_range(self.leaf).start + number) as u32;
         self.found.features.push(FeatureVertex { vertex, feature });

@@ -7,7 +7,7 @@ use super::sheets::{CaseId, CaseTable, FaceChoice};
 use super::{ContourError, TooManyVertices};
 use crate::band::{LeafId, LeafMask, SignField, Z_FIRST, Z_LAST};
 use crate::edge::bits;
-use crate::run::RunSettings;
+use crate::run::{RunSettings, SHARE};
 use rayon::prelude::*;
 
 /// Signs of the corners of a leaf's cells: word `x` of `planes[x][dy + 2 dz]` holds for each (y, z) the
@@ -90,6 +90,7 @@ impl CellNumbers {
         let mut leaves: Vec<LeafCells> = ids
             .into_par_iter()
             .with_min_len(16)
+            .with_max_len(SHARE)
             .map(|leaf| {
                 run.check()?;
                 let mut cells = LeafCells { active: [0; 8], before: [0; 8], first_cell: 0, first_vertex: 0 };

@@ -6,6 +6,7 @@
 use super::rounds::LeafMesh;
 use crate::band::LeafId;
 use crate::mesh::TriMesh;
+use crate::run::SHARE;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -62,7 +63,7 @@ impl LeafMesh {
         firsts.resize(leaves + 1, next);
         let mut numbers = vec![0; self.mesh.vertices.len()];
         let parts = super::cells::split(&mut numbers, self.runs.iter().map(|run| run.numbers.len()));
-        parts.into_par_iter().zip(&self.runs).zip(&starts).with_min_len(64).for_each(
+        parts.into_par_iter().zip(&self.runs).zip(&starts).with_min_len(16).with_max_len(SHARE).for_each(
             |((part, run), &start)| {
                 let mut gone = gone_in(run).iter().peekable();
                 let mut next = start as u32;
@@ -76,7 +77,7 @@ impl LeafMesh {
         );
         let mut vertices = vec![[0.0; 3]; next];
         let parts = super::cells::split(&mut vertices, by_leaf.iter().map(|&n| left(&self.runs[n])));
-        parts.into_par_iter().zip(&by_leaf).with_min_len(64).for_each(|(part, &n)| {
+        parts.into_par_iter().zip(&by_leaf).with_min_len(16).with_max_len(SHARE).for_each(|(part, &n)| {
             let mut gone = gone_in(&self.runs[n]).iter().peekable();
             let there = self.runs[n].numbers.clone().filter(|v| gone.next_if_eq(&v).is_none());
             for (to, old) in part.iter_mut().zip(there) {
@@ -93,7 +94,7 @@ impl LeafMesh {
         }
         let mut triangles = vec![[0; 3]; ends[leaves]];
         let parts = super::cells::split(&mut triangles, counts.into_iter());
-        parts.into_par_iter().enumerate().with_min_len(16).for_each(|(leaf, part)| {
+        parts.into_par_iter().enumerate().with_min_len(16).with_max_len(SHARE).for_each(|(leaf, part)| {
             for (to, number) in part.iter_mut().zip(of_leaf(leaf)) {
                 *to = self.mesh.triangles[number].map(|v| numbers[v as usize]);
             }

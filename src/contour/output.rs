@@ -12,7 +12,7 @@ use super::vertex::is_missing;
 use super::{ContourError, ContourStatistics, TooManyVertices};
 use crate::band::LeafId;
 use crate::mesh::TriMesh;
-use crate::run::{Cancelled, PhaseGuard};
+use crate::run::{Cancelled, PhaseGuard, SHARE};
 use rayon::prelude::*;
 
 /// What is found of the polygons around the crossed edges that start in one leaf, besides their triangles.
@@ -66,6 +66,7 @@ pub fn triangulate(
         .par_iter()
         .zip(slices)
         .with_min_len(16)
+        .with_max_len(SHARE)
         .map(|(&leaf, ((corners, edges), sizes))| {
             phase.advance(1)?;
             Ok(in_leaf(cells, faces, &vertices, method, leaf, Slots::new(corners, edges), sizes))

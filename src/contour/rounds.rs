@@ -34,6 +34,9 @@ pub const STRAY: f64 = 4.0;
 const _: () = assert!(STRAY >= MARGIN, "a leaf must be able to change its own triangles");
 const _: () = assert!(STRAY + MARGIN < LEAF_DIM as f64, "a patch must hold all triangles in its bounds");
 
+/// Leaves that a thread takes on at a time at most: a patch takes a hundred times as long as a leaf in other loops.
+const PATCHES: usize = 4;
+
 /// Leaves that are left as they are where the field is cut off: there the mesh has a border.
 pub const AT_CUT: i32 = 2;
 
@@ -106,6 +109,7 @@ impl LeafMesh {
             let this = &*self;
             let changes: Vec<Option<(LeafId, Changes, T)>> = leaves
                 .par_iter()
+                .with_max_len(PATCHES)
                 .map(|&leaf| {
                     let Some(places) = places(this, leaf) else { return Ok(None) };
                     run.check()?;

@@ -6,6 +6,7 @@
 
 use crate::band::{LeafId, LeafMask, SignField};
 use crate::lattice::Axis;
+use crate::run::SHARE;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
 
@@ -49,7 +50,7 @@ impl EdgeNumbers {
     /// When there are more than 2^32 - 1 of them.
     pub fn new(signs: &SignField) -> Result<Self, TooManyEdges> {
         let ids: Vec<LeafId> = signs.leaves().collect();
-        let masks = ids.into_par_iter().with_min_len(64);
+        let masks = ids.into_par_iter().with_min_len(16).with_max_len(SHARE);
         let masks = masks.map(|leaf| Axis::ALL.map(|axis| signs.crossed_edges(leaf, axis)));
         Self::of_masks(masks, false)
     }

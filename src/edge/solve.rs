@@ -8,7 +8,7 @@ use crate::band::{LeafId, SignField};
 use crate::candidates::CandidateLists;
 use crate::distance::SignedDistance;
 use crate::lattice::Lattice;
-use crate::run::{Cancelled, Phase, RunSettings};
+use crate::run::{Cancelled, Phase, RunSettings, SHARE};
 use crate::slab::Slab;
 use rayon::prelude::*;
 
@@ -102,6 +102,7 @@ pub fn solve_by(
     let statistics = run.install(|| {
         tasks
             .into_par_iter()
+            .with_max_len(SHARE)
             .map(|(id, samples)| {
                 phase.advance(1)?;
                 let counts = leaf.solve(id, samples);

@@ -1,7 +1,7 @@
 //! The band as the edges and the contour need it, in plain arrays; and into OpenVDB, where it is to be kept.
 
 use super::stored_band::StoredBand;
-use crate::band::{self, BandSettings, InsideBlocks, LeafBatch, LeafMask, SignField};
+use crate::band::{self, BOXES_PER_BATCH, BandSettings, InsideBlocks, LeafBatch, LeafMask, SignField};
 use crate::candidates::{BlockLists, CandidateLists};
 use crate::distance::SignedDistance;
 use crate::edge::{NearTriangles, NodeTriangles, PartTriangles};
@@ -127,7 +127,9 @@ impl Parts {
             parts.take(kept);
             Ok(())
         };
-        let filter = band::build_kept(distance, settings, run, keep, |kept| {
+        // What only stays here need not be handed on in between.
+        let at_a_time = if is_stored { BOXES_PER_BATCH } else { usize::MAX };
+        let filter = band::build_kept(distance, settings, at_a_time, run, keep, |kept| {
             inside_blocks.extend_from_slice(&kept.inside_blocks);
             take(kept, &mut parts)
         })?;

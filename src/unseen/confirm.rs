@@ -5,7 +5,7 @@ use crate::candidates::LeafIndex;
 use crate::geom::triangle::Triangle;
 use crate::lattice::{Ijk, LEAF_DIM, Lattice};
 use crate::mesh::TriMesh;
-use crate::run::{Cancelled, RunSettings};
+use crate::run::{Cancelled, RunSettings, SHARE};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -104,6 +104,7 @@ impl<'a> NearMesh<'a> {
         let pairs: Vec<Vec<(u32, Nearest)>> = leaves
             .par_iter()
             .with_min_len(16)
+            .with_max_len(SHARE)
             .map(|(_, triangles)| {
                 run.check()?;
                 let mut pairs = Vec::new();

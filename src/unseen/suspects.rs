@@ -6,7 +6,7 @@ use crate::candidates::CandidateLists;
 use crate::distance::{Sample, SignedDistance};
 use crate::edge::NearTriangles;
 use crate::lattice::{Axis, Ijk, LEAF_DIM, LEAF_SIZE, Lattice};
-use crate::run::{Cancelled, RunSettings};
+use crate::run::{Cancelled, RunSettings, SHARE};
 use crate::slab::Slab;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -92,6 +92,7 @@ pub fn suspects(
         leaves
             .par_iter()
             .with_min_len(16)
+            .with_max_len(SHARE)
             .map(|&leaf| {
                 run.check()?;
                 Ok(search.leaf(leaf))
