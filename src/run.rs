@@ -87,7 +87,7 @@ impl CancelToken {
     }
 }
 
-/// Leaves that a thread takes on at a time at most. Left alone, rayon cuts a loop into a few parts for each thread, and all
+/// Leaves, or things like vertices, that a thread takes on at a time at most. Left alone, rayon cuts a loop into a few parts for each thread, and all
 /// wait for the last part: with two threads for up to a tenth of the loop.
 pub const SHARE: usize = 64;
 

@@ -10,12 +10,12 @@ pub(super) fn peak_rss() -> u64 {
 /// Has large blocks of memory returned to the system as soon as they are free, for the run that this process is for.
 ///
 /// The allocator of glibc does so at first, but keeps all blocks of a size from when one of that size was free: 20 MB here,
-/// which is what the stages before have left when the mesh is put in order. Armadillo +2% at 512 has a peak of 204 MB
-/// this way and 229 MB without, and takes the same time; from 128 kB on it is 197 MB and 4% more time.
+/// which is what the stages before have left when the mesh is put in order. Armadillo +2% at 512 had a peak of 204 MB
+/// with 2 MB and 229 MB without, in the same time; with 128 kB it was 197 MB, and 4% more time.
 pub(super) fn return_large_blocks() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     {
-        const LARGE: libc::c_int = 2 << 20;
+        const LARGE: libc::c_int = 1 << 20;
         // SAFETY: it takes two numbers and changes a number of the allocator, under its lock. Whether that was possible
         // makes no difference to anything but memory.
         let _ = unsafe { libc::mallopt(libc::M_MMAP_THRESHOLD, LARGE) };

@@ -9,7 +9,7 @@ use crate::distance::Sample;
 use crate::edge::{Crossing, Crossings, EdgeNumbers, NodeTriangles, bits};
 use crate::error::Error;
 use crate::lattice::{Axis, Ijk, Lattice};
-use crate::run::{Cancelled, Phase, RunSettings};
+use crate::run::{Cancelled, Phase, RunSettings, SHARE};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -38,7 +38,12 @@ pub(super) fn crossings(
     let leaves: Vec<LeafId> = signs.leaves().collect();
     let of_leaf = |&leaf: &LeafId| LeafNodes { solid, lattice, signs, nodes, leaf };
     let numbers = run.install(|| {
-        let other = leaves.par_iter().with_min_len(16).map(|leaf| of_leaf(leaf).beyond_lid()).collect();
+        let other = leaves
+            .par_iter()
+            .with_min_len(16)
+            .with_max_len(SHARE)
+            .map(|leaf| of_leaf(leaf).beyond_lid())
+            .collect();
         let near = near_nodes(signs, other);
         let masks = leaves.par_iter().zip(near).with_min_len(64).map(|(&leaf, near)| {
             Axis::ALL.map(|axis| {
@@ -55,7 +60,7 @@ pub(super) fn crossings(
             phase.advance(1)?;
             Ok(of_leaf(leaf).cross_all(&numbers))
         };
-        leaves.par_iter().with_min_len(4).map(in_leaf).collect::<Result<_, Cancelled>>()
+        leaves.par_iter().with_max_len(SHARE).map(in_leaf).collect::<Result<_, Cancelled>>()
     })?;
     let count = numbers.len();
     let (mut samples, mut parts) = (Vec::with_capacity(count), Vec::with_capacity(count));

@@ -8,7 +8,7 @@ use crate::distance::SignedDistance;
 use crate::edge::{NodeTriangles, PartTriangles};
 use crate::error::Error;
 use crate::lattice::{Ijk, LEAF_SIZE, Lattice};
-use crate::run::RunSettings;
+use crate::run::{RunSettings, SHARE};
 use crate::slab::Slab;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -78,7 +78,7 @@ impl Nodes {
                 .par_iter()
                 .zip(leaves)
                 .zip(&self.inside)
-                .with_min_len(16)
+                .with_max_len(SHARE)
                 .map(|((&origin, closest), known)| {
                     let found = inside_in_leaf(solid, lattice, origin, closest);
                     std::array::from_fn(|x| found[x] | known[x])

@@ -12,7 +12,7 @@ use super::solid::Solid;
 use crate::contour::Precision;
 use crate::contour::qef::Qef;
 use crate::mesh::TriMesh;
-use crate::run::{Cancelled, RunSettings};
+use crate::run::{Cancelled, RunSettings, SHARE};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -109,7 +109,7 @@ pub(super) fn process(
         }
         let targets: Vec<Option<Target>> = active
             .par_iter()
-            .with_min_len(64)
+            .with_max_len(SHARE)
             .map(|vertex| target(&embedding, &moving, solid, vertex, voxel))
             .collect();
         let mut moved = Vec::new();

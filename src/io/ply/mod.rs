@@ -157,14 +157,21 @@ pub(super) fn write_vertices(
     coordinates: Coordinates,
     writer: &mut impl Write,
 ) -> std::io::Result<()> {
-    for &x in vertices.as_flattened() {
+    let mut bytes = Vec::with_capacity(8 * 3 * TOGETHER);
+    for some in vertices.chunks(TOGETHER) {
+        bytes.clear();
+        let numbers = some.as_flattened().iter();
         match coordinates {
-            Coordinates::F32 => writer.write_all(&(x as f32).to_le_bytes())?,
-            Coordinates::F64 => writer.write_all(&x.to_le_bytes())?,
+            Coordinates::F32 => bytes.extend(numbers.flat_map(|&x| (x as f32).to_le_bytes())),
+            Coordinates::F64 => bytes.extend(numbers.flat_map(|&x| x.to_le_bytes())),
         }
+        writer.write_all(&bytes)?;
     }
     Ok(())
 }
+
+/// Vertices or faces that are handed to the file together: one by one takes twice as long.
+const TOGETHER: usize = 1024;
 
 /// Bytes of a face.
 pub(super) const FACE: usize = 13;
@@ -174,12 +181,19 @@ pub(super) fn write_faces(
     triangles: impl IntoIterator<Item = [u32; 3]>,
     writer: &mut impl Write,
 ) -> std::io::Result<()> {
+    let mut bytes = [3; FACE * TOGETHER];
+    let mut used = 0;
     for triangle in triangles {
-        let mut record = [3; FACE];
+        let record = &mut bytes[used..used + FACE];
         for (place, v) in record[1..].chunks_exact_mut(4).zip(triangle) {
             place.copy_from_slice(&v.to_le_bytes());
         }
-        writer.write_all(&record)?;
+        used += FACE;
+        if used == bytes.len() {
+            writer.write_all(&bytes)?;
+            used = 0;
+        }
     }
+    writer.write_all(&bytes[..used])?;
     Ok(())
 }
