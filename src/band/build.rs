@@ -165,7 +165,8 @@ pub fn build_below<E: From<Cancelled> + Send>(
     sink: impl FnMut(LeafBatch) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
     let plan = Plan::new(distance, settings, &FilterSettings::default());
-    build_with(plan, settings, Some(below), BOXES_PER_BATCH, run, LeafBatch::clone, sink)
+    // All of it is kept by who asks.
+    build_with(plan, settings, Some(below), usize::MAX, run, LeafBatch::clone, sink)
 }
 
 /// The work of a band: which boxes to go through with which filters.
