@@ -5,7 +5,7 @@ use crate::geom::aabb::Aabb;
 use crate::geom::swept::{Sphere, Swept};
 use crate::geom::triangle::Triangle;
 use crate::mesh::TriMesh;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 /// The hierarchy. Holds copies of the triangles in its own order, so a query touches nothing else.
@@ -30,9 +30,11 @@ const FIT_EXACTLY: usize = WIDTH * WIDTH;
 /// handing it over.
 const PARALLEL: usize = 2048;
 
+/// A triangle while it is sorted. In 16 bytes, since sorting is moving them: where exactly a subtree ends matters to nobody.
 #[derive(Clone, Copy)]
 struct Primitive {
-    centroid: DVec3,
+    /// From the centre of the mesh, in half its extent.
+    centroid: Vec3,
     id: u32,
 }
 
@@ -47,13 +49,15 @@ impl Ssvh {
         assert!(count > 0 && count < u32::MAX as usize, "the hierarchy needs 1 to 2^32 - 2 triangles");
         let bounds = Aabb::around(mesh.vertices.iter().map(|&v| DVec3::from(v)));
         let centre = bounds.centre();
+        let extent = bounds.size().max_element() * 0.5;
+        let scale = if extent > 0.0 { 1.0 / extent } else { 1.0 };
         let mut primitives: Vec<Primitive> = mesh
             .triangles
             .par_iter()
             .zip(0u32..count as u32)
             .map(|(t, id)| {
                 let [a, b, c] = t.map(|v| DVec3::from(mesh.vertices[v as usize]) - centre);
-                Primitive { centroid: (a + b + c) / 3.0, id }
+                Primitive { centroid: ((a + b + c) * (scale / 3.0)).as_vec3(), id }
             })
             .collect();
         let mut nodes = vec![Node::EMPTY; node_count(count)];
@@ -65,7 +69,7 @@ impl Ssvh {
             positions[id as usize] = position as u32;
         }
         let triangles = ids.par_iter().map(|&id| triangle(mesh, id)).collect();
-        Ssvh { nodes, triangles, ids, positions, centre, extent: bounds.size().max_element() * 0.5 }
+        Ssvh { nodes, triangles, ids, positions, centre, extent }
     }
 
     /// The triangle with mesh number `id`.
@@ -206,8 +210,10 @@ fn split(primitives: &mut [Primitive], capacity: usize) {
     if chunks <= 1 {
         return;
     }
-    let size = Aabb::around(primitives.iter().map(|p| p.centroid)).size();
-    let axis = size.max_position();
+    let ends = primitives
+        .iter()
+        .fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[lo, hi], p| [lo.min(p.centroid), hi.max(p.centroid)]);
+    let axis = (ends[1] - ends[0]).max_position();
     let middle = chunks / 2 * capacity;
     primitives.select_nth_unstable_by(middle, |a, b| {
         a.centroid[axis].total_cmp(&b.centroid[axis]).then(a.id.cmp(&b.id))
