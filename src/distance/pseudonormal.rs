@@ -8,37 +8,35 @@ use crate::geom::triangle::{Feature, Side, Triangle};
 use crate::mesh::{Topology, TriMesh};
 use crate::ssvh::Ssvh;
 use glam::DVec3;
-use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Angle-weighted sums per vertex; edges and faces follow from the triangles.
-#[derive(Clone, Debug)]
+///
+/// A vertex has its sum when it is first asked for: of a mesh whose triangles are small beside the voxels most vertices never are.
+/// Threads that ask at the same time compute the same numbers, so it does not matter whose stay.
+#[derive(Debug)]
 pub(super) struct Pseudonormals {
-    by_vertex: Vec<DVec3>,
+    /// The bits of each coordinate and one: 0 as long as it is not known. No sum is the number that is not one with all bits.
+    by_vertex: Vec<[AtomicU64; 3]>,
+}
+
+/// What the pseudonormals are those of.
+#[derive(Clone, Copy)]
+pub(super) struct Oriented<'a> {
+    pub(super) mesh: &'a TriMesh,
+    pub(super) topology: &'a Topology,
+    pub(super) triangles: &'a Ssvh,
 }
 
 impl Pseudonormals {
-    pub(super) fn new(mesh: &TriMesh, topology: &Topology, triangles: &Ssvh) -> Self {
-        let by_vertex = (0..mesh.vertices.len() as u32)
-            .into_par_iter()
-            .with_min_len(1024)
-            .map(|v| {
-                let around = topology.around_vertex(v).iter();
-                around.map(|&t| angle_weighted(triangles.triangle(t), mesh.triangles[t as usize], v)).sum()
-            })
-            .collect();
-        Pseudonormals { by_vertex }
+    pub(super) fn new(mesh: &TriMesh) -> Self {
+        Pseudonormals { by_vertex: bytemuck::zeroed_vec(mesh.vertices.len()) }
     }
 
-    /// The pseudonormal, not normalised, of a feature of triangle `id`.
-    pub(super) fn of(
-        &self,
-        mesh: &TriMesh,
-        topology: &Topology,
-        triangles: &Ssvh,
-        id: u32,
-        feature: Feature,
-    ) -> DVec3 {
-        let vertex = |side: Side| self.by_vertex[mesh.triangles[id as usize][side.index()] as usize];
+    /// The pseudonormal, not normalised, of a feature of triangle `id`. Always of the same mesh.
+    pub(super) fn of(&self, oriented: Oriented<'_>, id: u32, feature: Feature) -> DVec3 {
+        let Oriented { mesh, topology, triangles } = oriented;
+        let vertex = |side: Side| self.at_vertex(oriented, mesh.triangles[id as usize][side.index()]);
         match feature {
             Feature::Face => triangles.triangle(id).normal,
             Feature::Vertex(side) => vertex(side),
@@ -49,6 +47,22 @@ impl Pseudonormals {
                 if sum == DVec3::ZERO { vertex(side) + vertex(side.next()) } else { sum }
             }
         }
+    }
+
+    fn at_vertex(&self, oriented: Oriented<'_>, v: u32) -> DVec3 {
+        let stored = &self.by_vertex[v as usize];
+        let known = stored.each_ref().map(|x| x.load(Ordering::Relaxed));
+        if known.iter().all(|&x| x != 0) {
+            return DVec3::from(known.map(|x| f64::from_bits(x - 1)));
+        }
+        let Oriented { mesh, topology, triangles } = oriented;
+        let around = topology.around_vertex(v).iter();
+        let sum: DVec3 =
+            around.map(|&t| angle_weighted(triangles.triangle(t), mesh.triangles[t as usize], v)).sum();
+        for (stored, x) in stored.iter().zip(sum.to_array()) {
+            stored.store(x.to_bits().wrapping_add(1), Ordering::Relaxed);
+        }
+        sum
     }
 }
 

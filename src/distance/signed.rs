@@ -1,6 +1,6 @@
 //! The signed distance dis(p): negative inside.
 
-use super::pseudonormal::Pseudonormals;
+use super::pseudonormal::{Oriented, Pseudonormals};
 use crate::geom::triangle::{ClosestPoint, Feature};
 use crate::mesh::{Topology, TriMesh};
 use crate::ssvh::Ssvh;
@@ -29,13 +29,13 @@ pub struct Sample {
 }
 
 impl<'m> SignedDistance<'m> {
-    /// Builds hierarchy and pseudonormals on the current rayon pool.
+    /// Builds the hierarchy on the current rayon pool.
     ///
     /// # Panics
     /// When the mesh has no triangles.
     pub fn new(mesh: &'m TriMesh, topology: &'m Topology) -> Self {
         let ssvh = Ssvh::new(mesh);
-        let pseudonormals = Pseudonormals::new(mesh, topology, &ssvh);
+        let pseudonormals = Pseudonormals::new(mesh);
         SignedDistance { mesh, topology, ssvh, pseudonormals }
     }
 
@@ -70,7 +70,8 @@ impl<'m> SignedDistance<'m> {
 
     /// The angle-weighted pseudonormal of a feature, not normalised; points outward.
     pub fn pseudonormal(&self, triangle: u32, feature: Feature) -> DVec3 {
-        self.pseudonormals.of(self.mesh, self.topology, &self.ssvh, triangle, feature)
+        let oriented = Oriented { mesh: self.mesh, topology: self.topology, triangles: &self.ssvh };
+        self.pseudonormals.of(oriented, triangle, feature)
     }
 
     /// The unit gradient of the distance at `p`, where `sample` was taken: the normal of the offset surface
