@@ -8,10 +8,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// So fine that slabs with their halos are less than the whole.
-const RESOLUTION: &str = "160";
+const RESOLUTION: &str = "256";
 
 /// Less than the whole takes.
-const MEMORY: &str = "88M";
+const MEMORY: &str = "132M";
 
 /// A model and a directory for what is made of it.
 struct Bench {

@@ -100,7 +100,7 @@ fn slabs_one_after_the_other_give_the_whole() {
                 let whole = offset(&mesh, &settings, &run()).unwrap();
                 let mut pieces = Gathered::default();
                 let memory =
-                    20_000 * whole.statistics.vdb.leaves * if tolerance.is_some() { 39 } else { 34 } / 40;
+                    16_000 * whole.statistics.vdb.leaves * if tolerance.is_some() { 39 } else { 34 } / 40;
                 let slabs =
                     offset_in_slabs(&mesh, &settings, Cut::Memory(memory), &mut pieces, &run()).unwrap();
                 assert!(slabs.statistics.slabs > 1, "{what}: {}", slabs.statistics.slabs);

@@ -66,9 +66,9 @@ pub struct OffsetResult {
 pub fn offset(mesh: &TriMesh, settings: &OffsetSettings, run: &RunSettings) -> Result<OffsetResult, Error> {
     Prepared::with(mesh, settings, run, |prepared| {
         let fits = |band_settings: &BandSettings| {
-            unsuitable::check_memory(mesh, band_settings, settings.max_memory).is_ok()
+            unsuitable::check_memory(mesh, band_settings, settings.keep_band, settings.max_memory).is_ok()
         };
-        unsuitable::check_memory(mesh, &prepared.band_settings, settings.max_memory)?;
+        unsuitable::check_memory(mesh, &prepared.band_settings, settings.keep_band, settings.max_memory)?;
         until_seen(prepared, fits, |band_settings, times| {
             on_lattice(prepared.distance, settings, band_settings, times, run)
         })
@@ -80,7 +80,8 @@ pub fn offset(mesh: &TriMesh, settings: &OffsetSettings, run: &RunSettings) -> R
 /// # Errors
 /// [`Error::Memory`] when it does not; [`Error::Settings`].
 pub fn check_memory(mesh: &TriMesh, settings: &OffsetSettings) -> Result<(), Error> {
-    Ok(unsuitable::check_memory(mesh, &settings.resolve(mesh)?, settings.max_memory)?)
+    let band_settings = settings.resolve(mesh)?;
+    Ok(unsuitable::check_memory(mesh, &band_settings, settings.keep_band, settings.max_memory)?)
 }
 
 /// The narrow band of an offset, in OpenVDB grids, and no mesh: no edge is intersected.
@@ -94,7 +95,7 @@ pub fn offset_band(
 ) -> Result<OffsetResult, Error> {
     Prepared::with(mesh, settings, run, |prepared| {
         let Prepared { distance, ref band_settings, times, .. } = *prepared;
-        unsuitable::check_memory(mesh, band_settings, settings.max_memory)?;
+        unsuitable::check_memory(mesh, band_settings, true, settings.max_memory)?;
         let mut statistics = OffsetStatistics::new(band_settings, times);
         let started = Instant::now();
         let mut stored = StoredBand::new(band_settings)?;

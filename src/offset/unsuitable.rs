@@ -95,8 +95,9 @@ impl MemoryError {
 }
 
 /// Peak memory per leaf of the band without what the input takes, in bytes: signs, closest triangles, lists, crossings,
-/// cells and mesh. Measured on several models at 512 to 2048 voxels, and rounded up.
-const BYTES_PER_LEAF: u64 = 20_000;
+/// cells and mesh. Measured on nine models in four distances at 512 voxels, and rounded up: at most 11,700 for meshes alone,
+/// 14,300 with the band in OpenVDB, too.
+const BYTES_PER_LEAF: u64 = 16_000;
 
 /// The leaves whose work fits into this many bytes beside the input.
 pub(super) fn leaves_within(mesh: &TriMesh, bytes: u64) -> u64 {
@@ -116,10 +117,12 @@ fn bytes(n: u64) -> String {
     }
 }
 
-/// Bytes per h^2 of offset surface: band in both forms, crossings, cells and mesh. Measured as peak memory
-/// over area / h^2 on several models, and rounded up: too low, and the machine swaps; too high, and work
-/// that fits is refused.
-const BYTES_PER_CELL: f64 = 600.0;
+/// Bytes per h^2 of offset surface: band, crossings, cells and mesh. Measured as peak memory over area / h^2 on the same models, at
+/// most 298, and rounded up: too low, and the machine swaps; too high, and work that fits is refused.
+const BYTES_PER_CELL: f64 = 350.0;
+
+/// What the band in OpenVDB adds to that: together it was 557 at most.
+const BYTES_PER_STORED_CELL: f64 = 250.0;
 
 /// The same for each voxel of half-width beyond the first.
 const BYTES_PER_CELL_AND_VOXEL: f64 = 60.0;
@@ -127,15 +130,18 @@ const BYTES_PER_CELL_AND_VOXEL: f64 = 60.0;
 /// Bytes per input triangle: hierarchy, topology, pseudonormals.
 const BYTES_PER_TRIANGLE: f64 = 260.0;
 
+/// Checks that an offset fits into memory, with its band in OpenVDB if it is kept.
 pub(super) fn check_memory(
     mesh: &TriMesh,
     settings: &BandSettings,
+    keeps_band: bool,
     max_memory: Option<u64>,
 ) -> Result<(), MemoryError> {
     let Some(allowed) = max_memory.or_else(available_memory) else { return Ok(()) };
     let area = offset_area(mesh, settings.r);
     let voxel = settings.lattice.voxel;
-    let per_cell = BYTES_PER_CELL + (settings.half_width - 1.0) * BYTES_PER_CELL_AND_VOXEL;
+    let stored = if keeps_band { BYTES_PER_STORED_CELL } else { 0.0 };
+    let per_cell = BYTES_PER_CELL + stored + (settings.half_width - 1.0) * BYTES_PER_CELL_AND_VOXEL;
     let fixed = input_bytes(mesh) as f64;
     let needed = fixed + area / (voxel * voxel) * per_cell;
     if needed <= allowed as f64 {

@@ -56,6 +56,8 @@ impl Work<'_> {
             distance: Length::Units(0.0),
             voxel: VoxelSize::Units(at.voxel),
             half_width: at.thickness / at.voxel + BEYOND,
+            // A solid takes more than a mesh of its size.
+            keep_band: true,
             max_memory: self.settings.max_memory,
             ..OffsetSettings::default()
         };
