@@ -2,8 +2,8 @@
 //! closed, or is and intersects itself: there the offset solid is closed along the jump.
 
 use super::{BandSettings, LeafBatch};
-use crate::candidates::{BlockLists, LeafIndex};
-use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE};
+use crate::candidates::BlockLists;
+use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, LeafIndex};
 
 /// Uniform inside leaves that touch, across a face, a region which is outside as a whole. Without them the
 /// sign change between the two would lie in no leaf. `leaves` are those of the band, `inside_blocks` what

@@ -1,9 +1,8 @@
 //! The lists of all blocks of 2^3 nodes that the offset surface may pass, by leaf.
 
-use super::LeafIndex;
 use super::near::{Candidates, PlaneBound, base, packed};
 use crate::filter::Block;
-use crate::lattice::{Ijk, Lattice};
+use crate::lattice::{Ijk, Lattice, LeafIndex};
 
 /// The number of the block of 2^3 nodes that holds a node, in 0..64 within its leaf: the halves of halves of the leaf
 /// in the order of [`Block::children`](crate::filter::Block::children).

@@ -17,7 +17,6 @@
 //! corner.
 
 mod flat;
-mod leaf_index;
 mod lists;
 mod narrowing;
 mod near;
@@ -26,7 +25,6 @@ mod nodes;
 mod tests;
 
 pub use flat::EightPoints;
-pub use leaf_index::LeafIndex;
 pub use lists::{BlockLists, CandidateLists, block_in_leaf};
 pub use narrowing::{Narrowing, Nearest};
 pub use near::{Candidates, PlaneBound};

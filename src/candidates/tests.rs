@@ -169,21 +169,6 @@ proptest! {
 }
 
 #[test]
-fn a_leaf_is_found_by_its_origin() {
-    let origins: Vec<Ijk> =
-        [[0, 0, 0], [-8, 0, 0], [512, -64, 8], [56, 56, 56], [64, 56, 56], [-8, -8, -8]].map(Ijk).to_vec();
-    let index = LeafIndex::new(&origins);
-    for (n, &origin) in origins.iter().enumerate() {
-        assert_eq!(index.get(origin), Some(n));
-        assert_eq!(index.get(origin + Ijk([7, 3, 5])), Some(n));
-    }
-    for node in [[8, 0, 0], [-9, 0, 0], [i32::MAX; 3], [i32::MIN; 3], [511, -64, 8]] {
-        assert_eq!(index.get(Ijk(node)), None, "{node:?}");
-    }
-    assert_eq!(LeafIndex::default().get(Ijk([0; 3])), None);
-}
-
-#[test]
 fn lists_are_kept_by_block() {
     let push = |lists: &mut BlockLists, origin: [i32; 3], positions: &[u32]| {
         let bound = |&p: &u32| PlaneBound { low: p as f32, direction: [0.6, 0.0, -0.8] };

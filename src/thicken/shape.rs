@@ -79,7 +79,7 @@ struct Vertex {
 /// Where a vertex is to go.
 struct Target {
     to: DVec3,
-    /// Whatever the normals of the section.
+    /// Whether it is there in the next round, too, even where the normals of the section change.
     stays: bool,
 }
 

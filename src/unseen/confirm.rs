@@ -1,9 +1,8 @@
 //! Which suspects the finished mesh knows: tips of creases beyond the cells that see them are recovered afterwards.
 
 use super::suspects::{Hidden, Suspect, Suspects};
-use crate::candidates::LeafIndex;
 use crate::geom::triangle::Triangle;
-use crate::lattice::{Ijk, LEAF_DIM, Lattice};
+use crate::lattice::{Ijk, LEAF_DIM, Lattice, LeafIndex};
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings, SHARE};
 use glam::DVec3;

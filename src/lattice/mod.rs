@@ -10,6 +10,10 @@
 //!  number = 64 x + 8 y + z      word x of a 512-bit mask, bit 8 y + z of that word
 //! ```
 
+mod leaf_index;
+
+pub use leaf_index::LeafIndex;
+
 use std::ops::{Add, Sub};
 
 /// Nodes along one side of a leaf.

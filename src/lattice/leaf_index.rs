@@ -1,6 +1,6 @@
 //! Where a leaf is, by its origin: a sorted list of blocks of 8^3 leaves, each with a table.
 
-use crate::lattice::{Ijk, LEAF_DIM};
+use super::{Ijk, LEAF_DIM};
 
 /// Leaves along one side of a block: a table of 2 kB for each.
 const LEAVES: i32 = 8;
@@ -57,4 +57,26 @@ fn place(node: Ijk) -> usize {
     let [x, y, z] = node.0.map(|x| ((x & (BLOCK - 1)) / LEAF_DIM) as usize);
     let side = LEAVES as usize;
     (x * side + y) * side + z
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_leaf_is_found_by_its_origin() {
+        let origins: Vec<Ijk> =
+            [[0, 0, 0], [-8, 0, 0], [512, -64, 8], [56, 56, 56], [64, 56, 56], [-8, -8, -8]]
+                .map(Ijk)
+                .to_vec();
+        let index = LeafIndex::new(&origins);
+        for (n, &origin) in origins.iter().enumerate() {
+            assert_eq!(index.get(origin), Some(n));
+            assert_eq!(index.get(origin + Ijk([7, 3, 5])), Some(n));
+        }
+        for node in [[8, 0, 0], [-9, 0, 0], [i32::MAX; 3], [i32::MIN; 3], [511, -64, 8]] {
+            assert_eq!(index.get(Ijk(node)), None, "{node:?}");
+        }
+        assert_eq!(LeafIndex::default().get(Ijk([0; 3])), None);
+    }
 }
