@@ -77,14 +77,14 @@ pub fn recover(
     // By leaf how many wishes are not granted, and whether there is something left to do.
     let mut open: Vec<(u64, bool)> = wishes.iter().map(|w| (0, !w.is_empty())).collect();
     for stage in STAGES {
-        let (is_open, mut next) = (&open, open.clone());
+        let mut next = open.clone();
         mesh.in_rounds(
             cells,
+            cells.signs.leaves().filter(|leaf| open[leaf.0 as usize].1),
             run,
             |mesh, leaf| {
-                let wishes = &wishes[leaf.0 as usize];
                 let places = |w: &Wish| w.place.into_iter().chain([mesh.mesh.vertices[w.vertex as usize]]);
-                is_open[leaf.0 as usize].1.then(|| Bounds::around(wishes.iter().flat_map(places)))
+                Some(Bounds::around(wishes[leaf.0 as usize].iter().flat_map(places)))
             },
             |leaf, patch| {
                 let mut editor = Editor::new(patch, surface, cells, TOLERANCE, true);

@@ -57,6 +57,7 @@ pub fn refine(
         let mut changed = false;
         mesh.in_rounds(
             cells,
+            cells.signs.leaves(),
             run,
             |mesh, leaf| {
                 mesh.triangles(leaf).next()?;

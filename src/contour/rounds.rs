@@ -34,8 +34,9 @@ pub const STRAY: f64 = 4.0;
 const _: () = assert!(STRAY >= MARGIN, "a leaf must be able to change its own triangles");
 const _: () = assert!(STRAY + MARGIN < LEAF_DIM as f64, "a patch must hold all triangles in its bounds");
 
-/// Leaves that a thread takes on at a time at most: a patch takes a hundred times as long as a leaf in other loops.
-const PATCHES: usize = 4;
+/// Leaves that a thread takes on at a time at most: a patch takes a hundred times as long as a leaf in other loops, and a
+/// round waits for the last one.
+const PATCHES: usize = 1;
 
 /// Leaves that are left as they are where the field is cut off: there the mesh has a border.
 pub const AT_CUT: i32 = 2;
@@ -82,7 +83,7 @@ impl LeafMesh {
         (self.ranges[n]..self.ranges[n + 1]).chain(self.added[n].iter().copied())
     }
 
-    /// Has `work` change the patches around the leaves that `places` gives points for, each by itself. The patch of
+    /// Has `work` change the patches around those of `leaves` that `places` gives points for, each by itself. The patch of
     /// a leaf reaches as far from the points as a vertex that is moved can pull its triangles. What `work` returns
     /// is handed to `sum`, by leaf.
     ///
@@ -91,6 +92,7 @@ impl LeafMesh {
     pub fn in_rounds<T: Send>(
         &mut self,
         cells: &Cells<'_>,
+        leaves: impl Iterator<Item = LeafId>,
         run: &RunSettings,
         places: impl Fn(&LeafMesh, LeafId) -> Option<Bounds> + Sync,
         work: impl Fn(LeafId, Patch) -> (Patch, T) + Sync,
@@ -102,7 +104,7 @@ impl LeafMesh {
         }
         debug_assert!(self.is_at_home(cells), "a triangle begins far from its leaf");
         let mut by_colour: [Vec<LeafId>; 8] = Default::default();
-        for leaf in cells.signs.leaves().filter(|&leaf| cells.signs.depth(leaf, AT_CUT) == AT_CUT) {
+        for leaf in leaves.filter(|&leaf| cells.signs.depth(leaf, AT_CUT) == AT_CUT) {
             by_colour[colour(cells.signs.origin(leaf).0)].push(leaf);
         }
         for leaves in by_colour {
