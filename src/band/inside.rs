@@ -1,29 +1,45 @@
 //! The blocks of nodes that are inside as a whole: all that is known of the inside beyond the leaves.
 
-use crate::lattice::{Ijk, LEAF_DIM};
+use crate::lattice::leaf_index::{BLOCK, block, blocks_of, find, place};
+use crate::lattice::{Ijk, LEAF_DIM, LeafMask};
 use rayon::prelude::*;
 
-/// Blocks that do not overlap, by side and origin.
+/// Blocks that do not overlap.
 #[derive(Clone, Debug, Default)]
 pub struct InsideBlocks {
-    /// Per side, a power of two, the origins in ascending order.
-    by_side: Vec<(i32, Vec<Ijk>)>,
+    /// Those of at most 8^3 leaves, by the blocks of 8^3 leaves that hold them, ascending: a bit for each leaf.
+    blocks: Vec<Ijk>,
+    masks: Vec<LeafMask>,
+    /// Larger ones, per side, a power of two, the origins in ascending order.
+    larger: Vec<(i32, Vec<Ijk>)>,
 }
 
 impl InsideBlocks {
     /// From blocks (origin, side) whose sides are powers of two and whose origins are multiples of them.
-    pub fn new(blocks: &[(Ijk, i32)]) -> InsideBlocks {
-        let mut by_side: Vec<(i32, Vec<Ijk>)> = Vec::new();
-        let mut side = LEAF_DIM;
-        while blocks.iter().any(|block| block.1 >= side) {
-            let mut origins: Vec<Ijk> = blocks.iter().filter(|b| b.1 == side).map(|b| b.0).collect();
+    pub fn new(inside: &[(Ijk, i32)]) -> InsideBlocks {
+        let small = || inside.iter().filter(|b| b.1 <= BLOCK);
+        let blocks = blocks_of(small().map(|b| b.0));
+        let mut masks = vec![[0; 8]; blocks.len()];
+        let mut at = 0;
+        for &(origin, side) in small() {
+            let mask: &mut LeafMask = &mut masks[find(&blocks, &mut at, origin)];
+            let (first, n) = (place(origin), (side / LEAF_DIM) as usize);
+            let row = (1 << n) - 1;
+            for word in &mut mask[first >> 6..][..n] {
+                *word |= (0..n).fold(0, |rows, y| rows | row << (8 * y)) << (first & 63);
+            }
+        }
+        let mut larger = Vec::new();
+        let mut side = 2 * BLOCK;
+        while inside.iter().any(|b| b.1 >= side) {
+            let mut origins: Vec<Ijk> = inside.iter().filter(|b| b.1 == side).map(|b| b.0).collect();
             origins.sort_unstable();
             if !origins.is_empty() {
-                by_side.push((side, origins));
+                larger.push((side, origins));
             }
             side *= 2;
         }
-        InsideBlocks { by_side }
+        InsideBlocks { blocks, masks, larger }
     }
 
     /// Whether each of the nodes lies in one of the blocks.
@@ -33,7 +49,11 @@ impl InsideBlocks {
 
     /// Whether a node lies in one of the blocks.
     pub fn contains(&self, node: Ijk) -> bool {
-        self.by_side.iter().any(|(side, origins)| {
+        if let Ok(n) = self.blocks.binary_search(&block(node)) {
+            let place = place(node);
+            return self.masks[n][place >> 6] >> (place & 63) & 1 == 1;
+        }
+        self.larger.iter().any(|(side, origins)| {
             let origin = Ijk(node.0.map(|x| x & !(side - 1)));
             origins.binary_search(&origin).is_ok()
         })
@@ -46,12 +66,22 @@ mod tests {
 
     #[test]
     fn a_node_is_inside_when_a_block_holds_it() {
-        let blocks = [(Ijk::new(-8, 0, 0), 8), (Ijk::new(-64, 64, 0), 64), (Ijk::new(16, 0, 0), 8)];
+        let blocks = [
+            (Ijk::new(-8, 0, 0), 8),
+            (Ijk::new(-64, 64, 0), 64),
+            (Ijk::new(16, 0, 0), 8),
+            (Ijk::new(32, 16, 48), 16),
+            (Ijk::new(128, -256, 0), 128),
+        ];
         let inside = InsideBlocks::new(&blocks);
-        for node in [[-1, 7, 0], [-8, 0, 7], [-64, 64, 0], [-1, 127, 63], [16, 3, 3]] {
+        let within =
+            [[-1, 7, 0], [-8, 0, 7], [-64, 64, 0], [-1, 127, 63], [16, 3, 3], [32, 16, 48], [47, 31, 63]];
+        for node in within.into_iter().chain([[128, -256, 0], [255, -129, 127]]) {
             assert!(inside.contains(Ijk(node)), "{node:?}");
         }
-        for node in [[0, 0, 0], [-9, 0, 0], [-1, 63, 0], [-1, 128, 0], [24, 0, 0]] {
+        let beyond =
+            [[0, 0, 0], [-9, 0, 0], [-1, 63, 0], [-1, 128, 0], [24, 0, 0], [48, 31, 63], [32, 32, 48]];
+        for node in beyond.into_iter().chain([[127, -256, 0], [128, -128, 0]]) {
             assert!(!inside.contains(Ijk(node)), "{node:?}");
         }
     }

@@ -4,33 +4,27 @@
 use super::{BandSettings, LeafBatch};
 use crate::candidates::BlockLists;
 use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, LeafIndex};
+use rayon::prelude::*;
 
 /// Uniform inside leaves that touch, across a face, a region which is outside as a whole. Without them the
 /// sign change between the two would lie in no leaf. `leaves` are those of the band, `inside_blocks` what
-/// it found inside as a whole, `inside_at` says whether nodes are inside.
+/// it found inside as a whole, and `is_inside` says whether a node of no leaf is. On the current rayon pool.
 pub fn leaves_at_jumps(
     leaves: &[Ijk],
     inside_blocks: &[(Ijk, i32)],
     settings: &BandSettings,
-    inside_at: impl FnOnce(&[Ijk]) -> Vec<bool>,
+    is_inside: impl Fn(Ijk) -> bool + Sync,
 ) -> LeafBatch {
     let leaves = LeafIndex::new(leaves);
-    let mut pairs: Vec<(Ijk, Ijk)> = Vec::new();
-    for &(origin, side) in inside_blocks {
-        for (leaf, neighbour) in border(origin, side) {
-            // Beyond what is computed, nothing is known.
-            let is_computed = [leaf, neighbour].iter().all(|&l| settings.slab.computes(l, LEAF_DIM));
-            if is_computed && leaves.get(neighbour).is_none() {
-                pairs.push((leaf, neighbour));
-            }
-        }
-    }
-    let neighbours: Vec<Ijk> = pairs.iter().map(|&(_, neighbour)| neighbour).collect();
-    let mut origins: Vec<Ijk> = pairs
-        .iter()
-        .zip(inside_at(&neighbours))
-        .filter(|(_, inside)| !inside)
-        .map(|(&(leaf, _), _)| leaf)
+    let is_at_jump = |&(leaf, neighbour): &(Ijk, Ijk)| {
+        // Beyond what is computed, nothing is known.
+        let is_computed = [leaf, neighbour].iter().all(|&l| settings.slab.computes(l, LEAF_DIM));
+        is_computed && leaves.get(neighbour).is_none() && !is_inside(neighbour)
+    };
+    let mut origins: Vec<Ijk> = inside_blocks
+        .par_iter()
+        .with_min_len(16)
+        .flat_map_iter(|&(origin, side)| border(origin, side).filter(is_at_jump).map(|(leaf, _)| leaf))
         .collect();
     origins.sort_unstable();
     origins.dedup();
@@ -77,9 +71,7 @@ mod tests {
         let leaves = [Ijk::new(-8, 0, 0)];
         let settings =
             BandSettings { lattice: Lattice { voxel: 0.5 }, r: 0.0, half_width: 1.0, slab: Slab::WHOLE };
-        let batch = leaves_at_jumps(&leaves, &[(Ijk::default(), 16)], &settings, |nodes| {
-            nodes.iter().map(|n| n.0[0] >= 0).collect()
-        });
+        let batch = leaves_at_jumps(&leaves, &[(Ijk::default(), 16)], &settings, |node| node.0[0] >= 0);
         assert_eq!(batch.origins, [Ijk::new(0, 0, 8), Ijk::new(0, 8, 0), Ijk::new(0, 8, 8)]);
         assert!(batch.values.iter().all(|&v| v == -0.5));
     }

@@ -9,11 +9,12 @@ mod jumps;
 mod layers;
 mod leaf;
 mod leaves;
+mod ring;
 mod signs;
 #[cfg(test)]
 mod tests;
 
-pub use crate::lattice::{Axis, Ijk, LEAF_DIM, LEAF_SIZE, Lattice};
+pub use crate::lattice::{Axis, Ijk, LEAF_DIM, LEAF_SIZE, Lattice, LeafMask, Z_FIRST, Z_LAST, bits};
 pub use build::{
     BOXES_PER_BATCH, BandSettings, Below, build, build_below, build_filtered, build_kept, grid_nodes,
 };
@@ -22,4 +23,4 @@ pub use inside::InsideBlocks;
 pub use jumps::leaves_at_jumps;
 pub use layers::{Layers, count_layers};
 pub use leaves::{LeafBatch, inside_mask};
-pub use signs::{LeafId, LeafMask, SignField, Z_FIRST, Z_LAST};
+pub use signs::{LeafId, SignField};

@@ -5,21 +5,15 @@
 //! sign change, and every corner of such a cell, lies in some leaf of the field. Nobody has to ask
 //! for the sign of a node outside it.
 
-use crate::lattice::{Axis, Ijk, LEAF_DIM};
+use super::ring::with_ring;
+use crate::lattice::leaf_index::NO_LEAF;
+use crate::lattice::{Axis, Ijk, LEAF_DIM, LeafIndex, LeafMask, Z_FIRST, Z_LAST};
 use crate::slab::Slab;
 use rayon::prelude::*;
 
 /// The number of a leaf within its [`SignField`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LeafId(pub u32);
-
-/// A 512-bit mask of a leaf's nodes: word x, bit 8 y + z.
-pub type LeafMask = [u64; 8];
-
-/// The bits with z = 0 in each row of a word of a [`LeafMask`].
-pub const Z_FIRST: u64 = 0x0101_0101_0101_0101;
-/// The bits with z = 7 in each row of a word of a [`LeafMask`].
-pub const Z_LAST: u64 = Z_FIRST << 7;
 
 /// Signs of the nodes of a set of leaves, with neighbours.
 #[derive(Clone, Debug, Default)]
@@ -32,29 +26,8 @@ pub struct SignField {
     slab: Slab,
 }
 
-const NONE: u32 = u32::MAX;
-
 fn neighbour_slot(delta: [i32; 3]) -> usize {
     (9 * (delta[0] + 1) + 3 * (delta[1] + 1) + delta[2] + 1) as usize
-}
-
-fn neighbour_origin(origin: Ijk, slot: usize) -> Ijk {
-    let s = slot as i32;
-    origin + Ijk([s / 9 - 1, s / 3 % 3 - 1, s % 3 - 1].map(|d| d * LEAF_DIM))
-}
-
-/// For each of the leaves, sorted by origin, the number of its neighbour in a slot, or [`NONE`]. The neighbours' origins
-/// ascend as the leaves' do, so both are gone through side by side.
-fn find_shifted(origins: &[Ijk], slot: usize) -> Vec<u32> {
-    let mut next = 0;
-    let find = |&origin: &Ijk| {
-        let neighbour = neighbour_origin(origin, slot);
-        while origins.get(next).is_some_and(|&o| o < neighbour) {
-            next += 1;
-        }
-        if origins.get(next) == Some(&neighbour) { next as u32 } else { NONE }
-    };
-    origins.iter().map(find).collect()
 }
 
 impl SignField {
@@ -71,38 +44,26 @@ impl SignField {
         missing: impl FnOnce(&[Ijk]) -> Result<Vec<bool>, E>,
     ) -> Result<Self, E> {
         assert_eq!(origins.len(), inside.len(), "one mask for each leaf");
-        // Sorted by number: masks are ten times as large as what tells their order.
-        let mut all: Vec<(Ijk, u32)> = origins.iter().copied().zip(0..).collect();
-        all.par_sort_unstable();
-        assert!(all.windows(2).all(|pair| pair[0].0 != pair[1].0), "a leaf was given twice");
-
-        let band: Vec<Ijk> = all.iter().map(|&(origin, _)| origin).collect();
-        let mut ring: Vec<Ijk> = (0..27usize)
-            .into_par_iter()
-            .flat_map_iter(|slot| {
-                let found = find_shifted(&band, slot);
-                let missing = band.iter().zip(found).filter(|(_, found)| *found == NONE);
-                let ring = missing.map(|(&origin, _)| neighbour_origin(origin, slot));
-                ring.filter(|&origin| slab.computes(origin, LEAF_DIM)).collect::<Vec<_>>()
-            })
-            .collect();
-        ring.par_sort_unstable();
-        ring.dedup();
+        let index = LeafIndex::new(origins);
+        let mut all = with_ring(origins);
+        all.retain(|&origin| index.get(origin).is_some() || slab.computes(origin, LEAF_DIM));
+        let ring: Vec<Ijk> = all.iter().copied().filter(|&origin| index.get(origin).is_none()).collect();
+        assert_eq!(all.len() - ring.len(), origins.len(), "a leaf was given twice");
         let ring_inside = missing(&ring)?;
         assert_eq!(ring.len(), ring_inside.len(), "one sign for each missing leaf");
 
-        // Uniform ones are numbered on from the others.
-        let count = inside.len() as u32;
-        all.extend(ring.into_iter().zip(ring_inside.into_iter().map(|i| count + u32::from(i))));
-        all.par_sort_unstable();
-        let mask =
-            |n: u32| inside.get(n as usize).copied().unwrap_or(if n == count { [0; 8] } else { [!0; 8] });
-        let inside = all.par_iter().with_min_len(256).map(|&(_, n)| mask(n)).collect();
-        let origins: Vec<Ijk> = all.into_iter().map(|(origin, _)| origin).collect();
-        let by_slot: Vec<Vec<u32>> =
-            (0..27usize).into_par_iter().map(|slot| find_shifted(&origins, slot)).collect();
-        let around = |n: usize| std::array::from_fn(|slot| by_slot[slot][n]);
-        let neighbours = (0..origins.len()).into_par_iter().with_min_len(256).map(around).collect();
+        let mut of_ring = ring_inside.into_iter();
+        // By leaf the number of its mask; uniform ones are numbered on from the others.
+        let count = inside.len();
+        let masks: Vec<usize> = all
+            .iter()
+            .map(|&origin| index.get(origin).or_else(|| of_ring.next().map(|i| count + usize::from(i))))
+            .map(|n| n.expect("a sign for each"))
+            .collect();
+        let mask = |n: usize| inside.get(n).copied().unwrap_or(if n == count { [0; 8] } else { [!0; 8] });
+        let inside = masks.par_iter().with_min_len(256).map(|&n| mask(n)).collect();
+        let neighbours = LeafIndex::new(&all).around(&all);
+        let origins = all;
         Ok(SignField { origins, inside, neighbours, slab })
     }
 
@@ -144,7 +105,7 @@ impl SignField {
     /// The neighbouring leaf `delta` leaves away, each component -1, 0 or 1; `None` beyond the ring.
     pub fn neighbour(&self, leaf: LeafId, delta: [i32; 3]) -> Option<LeafId> {
         let n = self.neighbours[leaf.0 as usize][neighbour_slot(delta)];
-        (n != NONE).then_some(LeafId(n))
+        (n != NO_LEAF).then_some(LeafId(n))
     }
 
     /// The leaf and the number in it of the node `local`, given in nodes from the origin of `leaf`,
@@ -188,7 +149,7 @@ mod tests {
     fn field(rule: impl Fn(Ijk) -> bool) -> SignField {
         let mut origins = Vec::new();
         for n in 0..27 {
-            origins.push(neighbour_origin(Ijk::default(), n));
+            origins.push(Ijk([n / 9, n / 3 % 3, n % 3].map(|d| LEAF_DIM * (d - 1))));
         }
         let inside: Vec<LeafMask> = origins
             .iter()

@@ -19,8 +19,7 @@ pub fn beside(mask: &LeafMask, [x, y, z]: [i32; 3]) -> LeafMask {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::band::Ijk;
-    use crate::edge::bits;
+    use crate::band::{Ijk, bits};
 
     #[test]
     fn layers_beside_a_leaf_are_those_next_to_its_own() {

@@ -35,6 +35,8 @@ pub struct Cells<'a> {
     /// The vertices on creases and corners.
     pub features: Features,
     cases: Vec<CellCase>,
+    /// By leaf, whether any of its cells is [crowded](Case::is_crowded).
+    crowded: Vec<bool>,
 }
 
 /// The case of an active cell, and its vertices.
@@ -81,7 +83,8 @@ impl<'a> Cells<'a> {
     ) -> Result<(Cells<'a>, Placements), Cancelled> {
         let bend = surface.map_or(Bend::UNKNOWN, Bend::of);
         let features = Features::new(Vec::new(), 0, bend);
-        let mut cells = Cells { signs, crossings, grid, slab, numbers, surface, features, cases: Vec::new() };
+        let (cases, crowded) = (Vec::new(), Vec::new());
+        let mut cells = Cells { signs, crossings, grid, slab, numbers, surface, features, cases, crowded };
         let mut cases: Vec<CellCase> = bytemuck::zeroed_vec(numbers.len());
         // Face and edge vertices come after them, and the whole need not move for those few. Room that is not used is not
         // touched.
@@ -103,6 +106,7 @@ impl<'a> Cells<'a> {
             })
             .collect::<Result<_, Cancelled>>()?;
         cells.cases = cases;
+        cells.crowded = placed.iter().map(|own| own.is_crowded).collect();
         let mut statistics = ContourStatistics::default();
         let mut wishes = Vec::with_capacity(placed.len());
         let mut features = Vec::with_capacity(placed.iter().map(|own| own.features.len()).sum());
@@ -122,6 +126,11 @@ impl<'a> Cells<'a> {
     /// Whether a leaf is counted.
     pub fn owns(&self, leaf: LeafId) -> bool {
         self.slab.owns(self.signs.origin(leaf))
+    }
+
+    /// Whether a leaf has a [crowded](Case::is_crowded) cell. Few have.
+    pub fn is_crowded(&self, leaf: LeafId) -> bool {
+        self.crowded[leaf.0 as usize]
     }
 
     /// The case of `cell`.

@@ -7,8 +7,8 @@ use super::face_vertex::FaceVertices;
 use super::features::Sides;
 use super::leaf_cells::LeafCells;
 use super::polygonize::{Fit, Polygon, PolygonCorner};
-use crate::band::{Axis, Ijk, LEAF_DIM, LeafId};
-use crate::edge::{EdgeId, bits};
+use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, bits};
+use crate::edge::EdgeId;
 
 /// The polygon around a crossed edge, and what decides how it is cut.
 #[derive(Clone, Copy, Debug)]

@@ -20,8 +20,8 @@ use super::numbering::{CellId, CellNumbers, locate};
 use super::sheets::{Case, Pair};
 use super::vertex::is_missing;
 use super::{ContourError, TooManyVertices};
-use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, SignField};
-use crate::edge::{Crossings, bits};
+use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, SignField, bits};
+use crate::edge::Crossings;
 use crate::geom::predicates::orient3d;
 use crate::run::{Cancelled, RunSettings, SHARE};
 use rayon::prelude::*;
@@ -103,6 +103,11 @@ pub fn face_vertices(
 fn in_leaf(cells: &Cells<'_>, vertices: &[[f64; 3]], leaf: LeafId) -> (Vec<Marks>, Vec<[f64; 3]>) {
     let (signs, numbers): (&SignField, &CellNumbers) = (cells.signs, cells.numbers);
     let (mut all, mut positions) = (Vec::new(), Vec::new());
+    // Both cells at a face can need a vertex there.
+    let upper = Axis::ALL.map(|axis| signs.neighbour(leaf, Ijk::default().next(axis).0));
+    if ![Some(leaf)].iter().chain(&upper).flatten().any(|&leaf| cells.is_crowded(leaf)) {
+        return (all, positions);
+    }
     for number in bits(numbers.active(leaf)) {
         let local = Ijk::in_leaf(Ijk::default(), number);
         let cell = numbers.id(leaf, number);

@@ -7,8 +7,7 @@ use super::cells::{CellCase, Cells};
 use super::face_vertex::FaceVertices;
 use super::numbering::CellId;
 use super::sheets::CaseTable;
-use crate::band::{Axis, Ijk, LEAF_DIM, LeafId};
-use crate::edge::bits;
+use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, bits};
 
 /// Cells along each axis: those of the leaf, and the last ones of the leaf before.
 const SIDE: usize = LEAF_DIM as usize + 1;

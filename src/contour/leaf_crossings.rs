@@ -2,8 +2,8 @@
 
 use super::beside::beside;
 use super::cell::Edge;
-use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, SignField};
-use crate::edge::{Crossing, Crossings, EdgeId, bits};
+use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, SignField, bits};
+use crate::edge::{Crossing, Crossings, EdgeId};
 
 /// Nodes along each axis: those of the leaf, and the first ones of the next.
 const SIDE: usize = LEAF_DIM as usize + 1;

@@ -9,8 +9,7 @@ use super::recover::Wish;
 use super::sheets::{Case, CaseTable};
 use super::smooth::{Batch, LANES};
 use super::vertex::{self, Placement, sample};
-use crate::band::{Ijk, LeafId};
-use crate::edge::bits;
+use crate::band::{Ijk, LeafId, bits};
 
 /// What is found of a leaf's cells besides the positions of their vertices.
 #[derive(Debug, Default)]
@@ -23,6 +22,8 @@ pub struct LeafVertices {
     pub several_sheets: u16,
     /// See [`ContourStatistics::clamped`](super::ContourStatistics::clamped).
     pub clamped: u16,
+    /// Whether any cell is [crowded](Case::is_crowded).
+    pub is_crowded: bool,
 }
 
 /// A cell that waits for its vertices.
@@ -69,6 +70,7 @@ impl LeafVertices {
             let id = constant_case(table, corners.mask(number));
             *cell = CellCase { first_vertex: first_vertex + first as u32, case: id };
             let case = table.case(id);
+            placer.found.is_crowded |= case.is_crowded();
             if cells.crossings.numbers.is_open() && !placer.has_all_crossings(case, number) {
                 let vertices = &mut placer.vertices[first..first + case.sheets().len()];
                 vertices.fill(vertex::MISSING);

@@ -5,8 +5,7 @@
 
 use super::sheets::{CaseId, CaseTable, FaceChoice};
 use super::{ContourError, TooManyVertices};
-use crate::band::{LeafId, LeafMask, SignField, Z_FIRST, Z_LAST};
-use crate::edge::bits;
+use crate::band::{LeafId, LeafMask, SignField, Z_FIRST, Z_LAST, bits};
 use crate::run::{RunSettings, SHARE};
 use rayon::prelude::*;
 

@@ -4,7 +4,7 @@
 //! whose edge (to the next node along the axis) changes sign, and the numbers follow the order leaf,
 //! axis, node.
 
-use crate::band::{LeafId, LeafMask, SignField};
+use crate::band::{LeafId, LeafMask, SignField, bits};
 use crate::lattice::Axis;
 use crate::run::SHARE;
 use bytemuck::Zeroable;
@@ -149,36 +149,6 @@ impl EdgeNumbers {
     /// The intersected edges that start in `leaf`, as (axis, node number), in the order of their numbers.
     pub fn in_leaf(&self, leaf: LeafId) -> impl Iterator<Item = (Axis, usize)> + '_ {
         Axis::ALL.into_iter().flat_map(move |axis| bits(self.mask(leaf, axis)).map(move |n| (axis, n)))
-    }
-}
-
-/// The numbers of the set bits of a leaf mask, ascending.
-#[inline]
-pub fn bits(mask: &LeafMask) -> Bits<'_> {
-    Bits { mask, word: 0, rest: mask[0] }
-}
-
-/// See [`bits`].
-#[derive(Clone, Debug)]
-pub struct Bits<'a> {
-    mask: &'a LeafMask,
-    word: usize,
-    /// The bits of the word that are still to come.
-    rest: u64,
-}
-
-impl Iterator for Bits<'_> {
-    type Item = usize;
-
-    #[inline]
-    fn next(&mut self) -> Option<usize> {
-        while self.rest == 0 {
-            self.rest = *self.mask.get(self.word + 1)?;
-            self.word += 1;
-        }
-        let bit = self.rest.trailing_zeros() as usize;
-        self.rest &= self.rest - 1;
-        Some(64 * self.word + bit)
     }
 }
 

@@ -14,7 +14,7 @@ mod shared;
 mod solve;
 mod statistics;
 
-pub use crossings::{Crossing, Crossings, EdgeId, EdgeNumbers, TooManyEdges, bits};
+pub use crossings::{Crossing, Crossings, EdgeId, EdgeNumbers, TooManyEdges};
 pub use node_triangles::{LeafTriangles, NodeTriangles, PartTriangles};
 pub use solve::{EdgeSettings, NearTriangles, RootMethod, solve, solve_by};
 pub use statistics::EdgeStatistics;

@@ -1,8 +1,7 @@
 //! The closest triangles of the band's nodes. One node of seven is in the band, so only those are kept, found by their ranks
 //! in bit masks.
 
-use super::bits;
-use crate::band::{LeafId, LeafMask, SignField};
+use crate::band::{LeafId, LeafMask, SignField, bits};
 use crate::lattice::{Ijk, LEAF_SIZE};
 
 /// The slot of a leaf of the ring.

@@ -1,21 +1,25 @@
 //! Where a leaf is, by its origin: a sorted list of blocks of 8^3 leaves, each with a table.
 
 use super::{Ijk, LEAF_DIM};
+use rayon::prelude::*;
 
 /// Leaves along one side of a block: a table of 2 kB for each.
 const LEAVES: i32 = 8;
 
 /// Nodes along one side of a block.
-const BLOCK: i32 = LEAVES * LEAF_DIM;
+pub const BLOCK: i32 = LEAVES * LEAF_DIM;
 
 /// No leaf.
-const NONE: u32 = u32::MAX;
+pub const NO_LEAF: u32 = u32::MAX;
+
+/// The numbers of a block's leaves, by [`place`].
+type Table = [u32; (LEAVES * LEAVES * LEAVES) as usize];
 
 /// The numbers of leaves by origin.
 #[derive(Clone, Debug, Default)]
 pub struct LeafIndex {
     blocks: Vec<Ijk>,
-    tables: Vec<[u32; (LEAVES * LEAVES * LEAVES) as usize]>,
+    tables: Vec<Table>,
 }
 
 impl LeafIndex {
@@ -24,14 +28,12 @@ impl LeafIndex {
     /// # Panics
     /// When there are 2^32 - 1 leaves or more.
     pub fn new(origins: &[Ijk]) -> LeafIndex {
-        assert!(origins.len() < NONE as usize, "leaves are numbered by 32 bits");
-        let mut blocks: Vec<Ijk> = origins.iter().map(|&o| block(o)).collect();
-        blocks.sort_unstable();
-        blocks.dedup();
-        let mut tables = vec![[NONE; (LEAVES * LEAVES * LEAVES) as usize]; blocks.len()];
+        assert!(origins.len() < NO_LEAF as usize, "leaves are numbered by 32 bits");
+        let blocks = blocks_of(origins.iter().copied());
+        let mut tables = vec![[NO_LEAF; (LEAVES * LEAVES * LEAVES) as usize]; blocks.len()];
+        let mut at = 0;
         for (&origin, n) in origins.iter().zip(0..) {
-            let table = blocks.binary_search(&block(origin)).expect("every leaf has a block");
-            tables[table][place(origin)] = n;
+            tables[find(&blocks, &mut at, origin)][place(origin)] = n;
         }
         LeafIndex { blocks, tables }
     }
@@ -41,20 +43,86 @@ impl LeafIndex {
     pub fn get(&self, node: Ijk) -> Option<usize> {
         let table = self.blocks.binary_search(&block(node)).ok()?;
         let n = self.tables[table][place(node)];
-        (n != NONE).then_some(n as usize)
+        (n != NO_LEAF).then_some(n as usize)
     }
+
+    /// For each of the leaves that were numbered, in their order, the numbers of the leaves around it, or [`NO_LEAF`]: at
+    /// (dx, dy, dz) leaves from it, each -1, 0 or 1, number 9 (dx + 1) + 3 (dy + 1) + (dz + 1). On the current rayon pool.
+    pub fn around(&self, origins: &[Ijk]) -> Vec<[u32; 27]> {
+        // By block the places of the blocks around it, likewise.
+        let blocks: Vec<[u32; 27]> = self
+            .blocks
+            .par_iter()
+            .with_min_len(64)
+            .map(|&block| {
+                std::array::from_fn(|slot| {
+                    let s = slot as i32;
+                    let delta = [s / 9 - 1, s / 3 % 3 - 1, s % 3 - 1];
+                    let other = block + Ijk(delta.map(|d| BLOCK * d));
+                    self.blocks.binary_search(&other).map_or(NO_LEAF, |n| n as u32)
+                })
+            })
+            .collect();
+        let around = |at: &mut usize, &origin: &Ijk| {
+            let blocks = &blocks[find(&self.blocks, at, origin)];
+            // Along each axis, for each of three leaves: which block it is in, and where there.
+            let [x, y, z] = origin.0.map(|x| {
+                let leaf = (x & (BLOCK - 1)) / LEAF_DIM;
+                [leaf - 1, leaf, leaf + 1]
+                    .map(|n| ((n.div_euclid(LEAVES) + 1) as usize, (n & (LEAVES - 1)) as usize))
+            });
+            let mut numbers = [NO_LEAF; 27];
+            for (slot, number) in numbers.iter_mut().enumerate() {
+                let (x, y, z) = (x[slot / 9], y[slot / 3 % 3], z[slot % 3]);
+                if let Some(table) = self.tables.get(blocks[9 * x.0 + 3 * y.0 + z.0] as usize) {
+                    *number = table[number_of([x.1, y.1, z.1])];
+                }
+            }
+            numbers
+        };
+        origins.par_iter().with_min_len(256).map_init(|| 0, around).collect()
+    }
+}
+
+/// The blocks of some leaves, ascending.
+pub fn blocks_of(origins: impl Iterator<Item = Ijk>) -> Vec<Ijk> {
+    let mut blocks: Vec<Ijk> = Vec::new();
+    for block in origins.map(block) {
+        // Leaves that follow each other are of one block, mostly.
+        if blocks.last() != Some(&block) {
+            blocks.push(block);
+        }
+    }
+    blocks.sort_unstable();
+    blocks.dedup();
+    blocks
+}
+
+/// The place among ascending blocks of the one that holds `node`, which is among them: `at`, if it is the one that was
+/// found last, and that is what it becomes.
+#[inline]
+pub fn find(blocks: &[Ijk], at: &mut usize, node: Ijk) -> usize {
+    let block = block(node);
+    if blocks[*at] != block {
+        *at = blocks.binary_search(&block).expect("every leaf has a block");
+    }
+    *at
 }
 
 /// The lowest node of the block that holds `node`.
 #[inline]
-fn block(node: Ijk) -> Ijk {
+pub fn block(node: Ijk) -> Ijk {
     Ijk(node.0.map(|x| x & !(BLOCK - 1)))
 }
 
-/// The place in its block's table of the leaf that holds `node`.
+/// The place in its block's table of the leaf that holds `node`: as that of a node in its leaf.
 #[inline]
-fn place(node: Ijk) -> usize {
-    let [x, y, z] = node.0.map(|x| ((x & (BLOCK - 1)) / LEAF_DIM) as usize);
+pub fn place(node: Ijk) -> usize {
+    number_of(node.0.map(|x| ((x & (BLOCK - 1)) / LEAF_DIM) as usize))
+}
+
+#[inline]
+fn number_of([x, y, z]: [usize; 3]) -> usize {
     let side = LEAVES as usize;
     (x * side + y) * side + z
 }
@@ -78,5 +146,23 @@ mod tests {
             assert_eq!(index.get(Ijk(node)), None, "{node:?}");
         }
         assert_eq!(LeafIndex::default().get(Ijk([0; 3])), None);
+    }
+
+    #[test]
+    fn leaves_around_are_those_that_are_there() {
+        // Across the faces, edges and corners of blocks, and a leaf alone.
+        let mut origins: Vec<Ijk> = (0..125)
+            .filter(|n| n % 3 != 0)
+            .map(|n| Ijk([n / 25, n / 5 % 5, n % 5].map(|x| LEAF_DIM * (x + 5))))
+            .collect();
+        origins.push(Ijk::new(-800, 0, 0));
+        let index = LeafIndex::new(&origins);
+        for (&origin, around) in origins.iter().zip(index.around(&origins)) {
+            for (n, number) in around.into_iter().enumerate() {
+                let delta = [n / 9, n / 3 % 3, n % 3].map(|d| LEAF_DIM * (d as i32 - 1));
+                let expected = index.get(origin + Ijk(delta)).map_or(NO_LEAF, |n| n as u32);
+                assert_eq!(number, expected, "{origin:?} {delta:?}");
+            }
+        }
     }
 }

@@ -10,9 +10,11 @@
 //!  number = 64 x + 8 y + z      word x of a 512-bit mask, bit 8 y + z of that word
 //! ```
 
-mod leaf_index;
+pub(crate) mod leaf_index;
+mod leaf_mask;
 
 pub use leaf_index::LeafIndex;
+pub use leaf_mask::{LeafMask, Z_FIRST, Z_LAST, bits};
 
 use std::ops::{Add, Sub};
 

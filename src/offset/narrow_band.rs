@@ -135,8 +135,8 @@ impl Parts {
         })?;
         let jumps = run.install(|| {
             parts.blocks = InsideBlocks::new(&inside_blocks);
-            let inside_at = |nodes: &[Ijk]| parts.blocks.contain(nodes);
-            band::leaves_at_jumps(&parts.origins, &inside_blocks, settings, inside_at)
+            let is_inside = |node| parts.blocks.contains(node);
+            band::leaves_at_jumps(&parts.origins, &inside_blocks, settings, is_inside)
         });
         if !jumps.is_empty() {
             take(keep(&jumps), &mut parts)?;

@@ -3,10 +3,10 @@
 use super::edge_search::{Edge, End, Next, Part, Search};
 use super::near_nodes::near_nodes;
 use super::solid::Solid;
-use crate::band::{LeafId, LeafMask, SignField};
+use crate::band::{LeafId, LeafMask, SignField, bits};
 use crate::candidates::{Candidates, block_in_leaf};
 use crate::distance::Sample;
-use crate::edge::{Crossing, Crossings, EdgeNumbers, NodeTriangles, bits};
+use crate::edge::{Crossing, Crossings, EdgeNumbers, NodeTriangles};
 use crate::error::Error;
 use crate::lattice::{Axis, Ijk, Lattice};
 use crate::run::{Cancelled, Phase, RunSettings, SHARE};
