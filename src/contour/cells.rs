@@ -35,7 +35,7 @@ pub struct Cells<'a> {
     /// The vertices on creases and corners.
     pub features: Features,
     cases: Vec<CellCase>,
-    /// By leaf, whether any of its cells is [crowded](Case::is_crowded).
+    /// By leaf, whether any of its cells is crowded ([`CornerSigns::crowded`](super::numbering::CornerSigns::crowded)).
     crowded: Vec<bool>,
 }
 
@@ -91,7 +91,7 @@ impl<'a> Cells<'a> {
         let count = numbers.vertices() as usize;
         let mut vertices = vec![[0.0; 3]; count + count / SPARE];
         vertices.truncate(count);
-        let leaves: Vec<LeafId> = signs.leaves().collect();
+        let leaves: Vec<LeafId> = numbers.leaves().collect();
         let case_slices = split(&mut cases, leaves.iter().map(|&leaf| numbers.range(leaf).len()));
         let vertex_slices = split(&mut vertices, leaves.iter().map(|&leaf| numbers.vertex_range(leaf).len()));
         let placed: Vec<LeafVertices> = leaves
@@ -106,12 +106,13 @@ impl<'a> Cells<'a> {
             })
             .collect::<Result<_, Cancelled>>()?;
         cells.cases = cases;
-        cells.crowded = placed.iter().map(|own| own.is_crowded).collect();
+        cells.crowded = vec![false; signs.len()];
         let mut statistics = ContourStatistics::default();
-        let mut wishes = Vec::with_capacity(placed.len());
+        let mut wishes = vec![Vec::new(); signs.len()];
         let mut features = Vec::with_capacity(placed.iter().map(|own| own.features.len()).sum());
         for (own, &leaf) in placed.into_iter().zip(&leaves) {
-            wishes.push(own.wishes);
+            cells.crowded[leaf.0 as usize] = own.is_crowded;
+            wishes[leaf.0 as usize] = own.wishes;
             features.extend(own.features);
             if cells.owns(leaf) {
                 statistics.cells += numbers.range(leaf).len() as u64;
@@ -128,7 +129,7 @@ impl<'a> Cells<'a> {
         self.slab.owns(self.signs.origin(leaf))
     }
 
-    /// Whether a leaf has a [crowded](Case::is_crowded) cell. Few have.
+    /// Whether a leaf has a crowded cell, in which sheets can get in each other's way. Few have.
     pub fn is_crowded(&self, leaf: LeafId) -> bool {
         self.crowded[leaf.0 as usize]
     }

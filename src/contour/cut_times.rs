@@ -2,10 +2,11 @@
 
 use super::cells::Cells;
 use super::edge_polygon::{EdgePolygon, for_polygons};
+use super::envelope::Envelope;
 use super::features::Sides;
 use super::grid::Grid;
 use super::numbering::CellNumbers;
-use super::polygonize::{Cut, CutMethod, Fit, polygonize};
+use super::polygonize::{Cut, CutMethod, Fit, Polygon, polygonize};
 use super::{ContourError, ContourSettings, face_vertex, reach};
 use crate::band::{Lattice, SignField};
 use crate::edge::Crossings;
@@ -44,24 +45,29 @@ pub fn cut_times<const N: usize>(
     run: &RunSettings,
 ) -> Result<[CutTimes; N], ContourError> {
     let grid = Grid::new(lattice, settings.precision, reach(signs, crossings))?;
-    let phase = run.phase(Phase::Contour, 2 * signs.len() as u64);
     run.install(|| {
         let numbers = CellNumbers::new(signs, run)?;
+        let phase = run.phase(Phase::Contour, (numbers.leaves().count() + signs.len()) as u64);
         let (cells, placed) = Cells::place(signs, crossings, grid, Slab::WHOLE, &numbers, None, &phase)?;
         let mut vertices = placed.vertices;
         let mut faces = face_vertex::face_vertices(&cells, &vertices, run)?;
         vertices.append(&mut faces.positions);
         let mut times = [CutTimes::default(); N];
-        let mut polygons: Vec<EdgePolygon<'static>> = Vec::new();
+        let mut polygons: Vec<(Polygon, Envelope, Fit<'static>)> = Vec::new();
         let mut triangles = Vec::new();
         for leaf in signs.leaves() {
             phase.advance(1)?;
             polygons.clear();
-            for_polygons(&cells, &faces, &vertices, leaf, |polygon| {
-                // Without a surface to ask there are no features, and no sides.
-                let fit = Fit { sides: &Sides::NONE, ..polygon.fit };
-                polygons.push(EdgePolygon { fit, ..polygon });
-            });
+            for_polygons(
+                &cells,
+                &faces,
+                &vertices,
+                leaf,
+                |EdgePolygon { polygon, envelope, fit, .. }| {
+                    // Without a surface to ask there are no features, and no sides.
+                    polygons.push((*polygon, envelope, Fit { sides: &Sides::NONE, ..fit }));
+                },
+            );
             for (times, method) in times.iter_mut().zip(methods) {
                 let mut shortest = f64::INFINITY;
                 for _ in 0..ROUNDS {
@@ -82,9 +88,13 @@ pub fn cut_times<const N: usize>(
     })
 }
 
-fn cut_all(polygons: &[EdgePolygon<'_>], method: CutMethod, triangles: &mut Vec<[u32; 3]>) -> u64 {
+fn cut_all(
+    polygons: &[(Polygon, Envelope, Fit<'_>)],
+    method: CutMethod,
+    triangles: &mut Vec<[u32; 3]>,
+) -> u64 {
     let mut split = 0;
-    for EdgePolygon { polygon, envelope, fit, .. } in polygons {
+    for (polygon, envelope, fit) in polygons {
         split += u64::from(polygonize(polygon, envelope, fit, method, triangles) == Cut::Split);
     }
     split

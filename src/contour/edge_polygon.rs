@@ -14,7 +14,7 @@ use crate::edge::EdgeId;
 #[derive(Clone, Copy, Debug)]
 pub struct EdgePolygon<'a> {
     /// The cell and face vertices around the edge.
-    pub polygon: Polygon,
+    pub polygon: &'a Polygon,
     /// The edge's envelope.
     pub envelope: Envelope,
     /// The surface at the crossing.
@@ -51,6 +51,8 @@ pub fn for_polygons(
         std::array::from_fn(|a| std::array::from_fn(|i| grid.plane(origin.0[a] + i as i32)));
     let at = |local: [i32; 3]| std::array::from_fn(|a| planes[a][local[a] as usize]);
     let mut ids = numbers.range(leaf).map(EdgeId);
+    // Made once: it is large, and most have four corners.
+    let mut polygon = Polygon::default();
     for axis in Axis::ALL {
         for (number, id) in bits(numbers.mask(leaf, axis)).zip(&mut ids) {
             let local = Ijk::in_leaf(Ijk::default(), number);
@@ -65,7 +67,7 @@ pub fn for_polygons(
             } else {
                 (End::Low, Envelope { above: ends[0], below: ends[1] })
             };
-            let polygon = polygon(&around, vertices, local, axis, outside);
+            fill(&mut polygon, &around, vertices, local, axis, outside);
             let sample = cells.crossings.sample(id);
             let point = grid.ideal(node, on_axis(axis, sample.t));
             let corners = || polygon.corners().iter().map(|c| c.vertex);
@@ -79,6 +81,7 @@ pub fn for_polygons(
             };
             let fit = Fit::new(point, sample.normal.map(f64::from), sides, grid.voxel());
             let (piece, number) = (sample.triangle, number as u16);
+            let polygon = &polygon;
             visit(EdgePolygon { polygon, envelope, fit, piece, node, number, along: (axis, sample.t) });
         }
     }
@@ -116,10 +119,17 @@ const AROUND: [[i32; 2]; 4] = [[0, 0], [-1, 0], [-1, -1], [0, -1]];
 /// along u (0) or v (1).
 const BETWEEN: [(usize, usize); 4] = [(1, 0), (2, 1), (2, 0), (3, 1)];
 
-/// The polygon around the edge from node `local` of a leaf along `axis`, counter-clockwise seen from the
+/// Makes `polygon` the one around the edge from node `local` of a leaf along `axis`, counter-clockwise seen from the
 /// end that is outside.
 #[inline]
-fn polygon(cells: &LeafCells<'_>, vertices: &[[f64; 3]], local: Ijk, axis: Axis, outside: End) -> Polygon {
+fn fill(
+    polygon: &mut Polygon,
+    cells: &LeafCells<'_>,
+    vertices: &[[f64; 3]],
+    local: Ijk,
+    axis: Axis,
+    outside: End,
+) {
     let (u, v) = axis.others();
     let around = AROUND.map(|[du, dv]| {
         let mut at = local.0;
@@ -136,12 +146,12 @@ fn polygon(cells: &LeafCells<'_>, vertices: &[[f64; 3]], local: Ijk, axis: Axis,
     };
     if !cells.have_face_vertices() {
         let [a, b, c, d] = [0, 1, 2, 3].map(cell_vertex);
-        return match outside {
-            End::High => Polygon::quad([a, b, c, d]),
-            End::Low => Polygon::quad([a, d, c, b]),
-        };
+        return polygon.set_quad(match outside {
+            End::High => [a, b, c, d],
+            End::Low => [a, d, c, b],
+        });
     }
-    let mut polygon = Polygon::default();
+    polygon.clear();
     for i in 0..4 {
         let (cell, face) = match outside {
             End::High => (i, i),
@@ -153,5 +163,4 @@ fn polygon(cells: &LeafCells<'_>, vertices: &[[f64; 3]], local: Ijk, axis: Axis,
             polygon.push(corner);
         }
     }
-    polygon
 }

@@ -77,7 +77,10 @@ pub fn face_vertices(
     vertices: &[[f64; 3]],
     run: &RunSettings,
 ) -> Result<FaceVertices, ContourError> {
-    let leaves: Vec<LeafId> = cells.signs.leaves().collect();
+    // Both cells at a face can need a vertex there.
+    let upper = |leaf| Axis::ALL.map(|axis| cells.signs.neighbour(leaf, Ijk::default().next(axis).0));
+    let is_crowded = |leaf| [Some(leaf)].iter().chain(&upper(leaf)).flatten().any(|&l| cells.is_crowded(l));
+    let leaves: Vec<LeafId> = cells.numbers.leaves().filter(|&leaf| is_crowded(leaf)).collect();
     let per_leaf: Vec<(Vec<Marks>, Vec<[f64; 3]>)> = leaves
         .par_iter()
         .with_min_len(16)
@@ -88,14 +91,18 @@ pub fn face_vertices(
         })
         .collect::<Result<_, Cancelled>>()?;
     let first_of_all = vertices.len() as u64;
-    let mut first = Vec::with_capacity(per_leaf.len() + 1);
+    let mut first = Vec::with_capacity(cells.signs.len() + 1);
     let (mut marks, mut positions) = (Vec::new(), Vec::new());
-    for (of_leaf, in_leaf) in per_leaf {
-        first.push(u32::try_from(first_of_all + positions.len() as u64).map_err(|_| TooManyVertices)?);
+    let next = |positions: &Vec<_>| {
+        u32::try_from(first_of_all + positions.len() as u64).map_err(|_| TooManyVertices)
+    };
+    for ((of_leaf, in_leaf), leaf) in per_leaf.into_iter().zip(leaves) {
+        // For the leaves before that have none, too.
+        first.resize(leaf.0 as usize + 1, next(&positions)?);
         marks.extend(of_leaf);
         positions.extend(in_leaf);
     }
-    first.push(u32::try_from(first_of_all + positions.len() as u64).map_err(|_| TooManyVertices)?);
+    first.resize(cells.signs.len() + 1, next(&positions)?);
     Ok(FaceVertices { marks, first, positions })
 }
 
@@ -103,11 +110,6 @@ pub fn face_vertices(
 fn in_leaf(cells: &Cells<'_>, vertices: &[[f64; 3]], leaf: LeafId) -> (Vec<Marks>, Vec<[f64; 3]>) {
     let (signs, numbers): (&SignField, &CellNumbers) = (cells.signs, cells.numbers);
     let (mut all, mut positions) = (Vec::new(), Vec::new());
-    // Both cells at a face can need a vertex there.
-    let upper = Axis::ALL.map(|axis| signs.neighbour(leaf, Ijk::default().next(axis).0));
-    if ![Some(leaf)].iter().chain(&upper).flatten().any(|&leaf| cells.is_crowded(leaf)) {
-        return (all, positions);
-    }
     for number in bits(numbers.active(leaf)) {
         let local = Ijk::in_leaf(Ijk::default(), number);
         let cell = numbers.id(leaf, number);

@@ -22,7 +22,7 @@ pub struct LeafVertices {
     pub several_sheets: u16,
     /// See [`ContourStatistics::clamped`](super::ContourStatistics::clamped).
     pub clamped: u16,
-    /// Whether any cell is [crowded](Case::is_crowded).
+    /// Whether any cell is crowded ([`CornerSigns::crowded`]).
     pub is_crowded: bool,
 }
 
@@ -64,13 +64,13 @@ impl LeafVertices {
         let table = CaseTable::get();
         let first_vertex = cells.numbers.vertex_range(leaf).start as u32;
         let (batch, waiting) = (Batch::default(), [None; LANES]);
+        let found = LeafVertices { is_crowded: corners.crowded() != [0; 8], ..found };
         let mut placer = Placer { cells, leaf, crossings, vertices, batch, waiting, found };
         let mut first = 0;
         for (cell, number) in cases.iter_mut().zip(bits(cells.numbers.active(leaf))) {
             let id = constant_case(table, corners.mask(number));
             *cell = CellCase { first_vertex: first_vertex + first as u32, case: id };
             let case = table.case(id);
-            placer.found.is_crowded |= case.is_crowded();
             if cells.crossings.numbers.is_open() && !placer.has_all_crossings(case, number) {
                 let vertices = &mut placer.vertices[first..first + case.sheets().len()];
                 vertices.fill(vertex::MISSING);

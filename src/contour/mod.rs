@@ -225,9 +225,9 @@ pub fn contour_slab(
     assert_eq!(crossings.samples.len(), crossings.numbers.len(), "one sample for each crossing");
     let reach = settings.reach.unwrap_or_else(|| reach(signs, crossings));
     let grid = Grid::new(lattice, settings.precision, reach)?;
-    let phase = run.phase(Phase::Contour, 2 * signs.len() as u64);
     run.install(|| {
         let numbers = CellNumbers::new(signs, run)?;
+        let phase = run.phase(Phase::Contour, steps(&numbers, crossings));
         let (cells, placed) = Cells::place(signs, crossings, grid, settings.slab, &numbers, surface, &phase)?;
         let Placements { mut vertices, mut wishes, mut statistics } = placed;
         let mut faces = face_vertex::face_vertices(&cells, &vertices, run)?;
@@ -236,7 +236,8 @@ pub fn contour_slab(
             output::triangulate(&cells, &faces, vertices, settings.cut, &phase)?;
         statistics += polygons;
         if let Some(surface) = surface {
-            for (wishes, far) in wishes.iter_mut().zip(far) {
+            for (leaf, far) in far {
+                let wishes = &mut wishes[leaf.0 as usize];
                 wishes.extend(far.into_iter().map(|vertex| Wish { vertex, place: None }));
                 // A vertex with a place comes before the same one without.
                 wishes.sort_by_key(|wish| (wish.vertex, wish.place.is_none()));
@@ -292,9 +293,9 @@ pub(crate) fn contour_by_edge(
 ) -> Result<(TriMesh, Vec<u8>), ContourError> {
     assert_eq!(crossings.samples.len(), crossings.numbers.len(), "one sample for each crossing");
     let grid = Grid::new(lattice, precision, reach(signs, crossings))?;
-    let phase = run.phase(Phase::Contour, 2 * signs.len() as u64);
     run.install(|| {
         let numbers = CellNumbers::new(signs, run)?;
+        let phase = run.phase(Phase::Contour, steps(&numbers, crossings));
         let (cells, Placements { mut vertices, .. }) =
             Cells::place(signs, crossings, grid, Slab::WHOLE, &numbers, None, &phase)?;
         let mut faces = face_vertex::face_vertices(&cells, &vertices, run)?;
@@ -307,6 +308,11 @@ pub(crate) fn contour_by_edge(
         }
         Ok((mesh, sizes))
     })
+}
+
+/// The leaves that are gone through for vertices and for triangles.
+fn steps(numbers: &CellNumbers, crossings: &Crossings) -> u64 {
+    (numbers.leaves().count() + crossings.numbers.leaves().len()) as u64
 }
 
 /// The largest index, in size, of a corner of an active cell.

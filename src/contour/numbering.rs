@@ -46,6 +46,11 @@ impl CornerSigns {
         })
     }
 
+    /// Cells that may have several sheets, and few others.
+    pub fn crowded(&self) -> LeafMask {
+        std::array::from_fn(|x| crowded([self.planes[x], self.planes[x + 1]]))
+    }
+
     /// The mask of inside corners of the cell with `number`, bit dx + 2 dy + 4 dz.
     #[inline]
     pub fn mask(&self, number: usize) -> u8 {
@@ -53,6 +58,22 @@ impl CornerSigns {
         let pick = |plane: usize, row: usize| (self.planes[plane][row] >> bit & 1) as u8;
         (0..4).fold(0, |mask, row| mask | pick(x, row) << (2 * row) | pick(x + 1, row) << (2 * row + 1))
     }
+}
+
+/// Of 64 cells, a bit each, those that may have several sheets, by the signs of their corners: `corners[dx][dy + 2 dz]`. Such
+/// a cell has a face whose signs alternate, or two opposite corners that differ from all their neighbours.
+fn crowded(corners: [[u64; 4]; 2]) -> u64 {
+    let alternates = |a: u64, b: u64, c: u64, d: u64| (a ^ b) & !(a ^ c) & !(b ^ d);
+    let [low, high] = corners;
+    let across_x = [low, high].map(|[a, b, d, c]| alternates(a, b, c, d));
+    // The rows at the lower and the upper face across y, then across z.
+    let along_x = [(0, 2), (1, 3), (0, 1), (2, 3)].map(|(a, b)| alternates(low[a], high[a], high[b], low[b]));
+    let differs = |x: usize, row: usize| {
+        let own = corners[x][row];
+        (own ^ corners[1 - x][row]) & (own ^ corners[x][row ^ 1]) & (own ^ corners[x][row ^ 2])
+    };
+    let opposite = [0, 1, 2, 3].map(|row| differs(0, row) & differs(1, row ^ 3));
+    across_x.into_iter().chain(along_x).chain(opposite).fold(0, |all, cells| all | cells)
 }
 
 /// The number of an active cell.
@@ -106,9 +127,12 @@ impl CellNumbers {
                     }
                     // Counts for now; the prefix sums follow.
                     cells.first_cell = u32::from(count);
-                    cells.first_vertex = bits(&cells.active)
-                        .map(|n| table.case(constant_case(table, corners.mask(n))).sheets().len() as u32)
-                        .sum();
+                    let crowded = corners.crowded();
+                    let crowded = std::array::from_fn(|x| crowded[x] & cells.active[x]);
+                    let more =
+                        |n: usize| table.case(constant_case(table, corners.mask(n))).sheets().len() - 1;
+                    cells.first_vertex =
+                        cells.first_cell + bits(&crowded).map(|n| more(n) as u32).sum::<u32>();
                 }
                 Ok(cells)
             })
@@ -131,6 +155,11 @@ impl CellNumbers {
     /// The number of cell vertices.
     pub fn vertices(&self) -> u32 {
         self.vertices
+    }
+
+    /// The leaves with active cells, ascending.
+    pub fn leaves(&self) -> impl Iterator<Item = LeafId> + '_ {
+        (0..self.leaves.len() as u32).map(LeafId).filter(|&leaf| !self.range(leaf).is_empty())
     }
 
     /// The active cells of `leaf`.
@@ -188,4 +217,29 @@ pub fn locate(signs: &SignField, leaf: LeafId, local: [i32; 3]) -> (LeafId, usiz
 #[inline]
 pub fn constant_case(table: &CaseTable, mask: u8) -> CaseId {
     table.id(mask, FaceChoice::INSIDE_APART)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_cell_with_several_sheets_is_crowded() {
+        let table = CaseTable::get();
+        let (mut several, mut all) = (0, 0);
+        for first in [0, 64, 128, 192] {
+            // Cell n has the mask first + n.
+            let corner = |bit: usize| (0..64).fold(0, |word, n| word | ((first + n) >> bit & 1) << n);
+            let corners = [0, 1].map(|dx| [0, 1, 2, 3].map(|row| corner(dx + 2 * row)));
+            let found = crowded(corners);
+            for n in 0..64u64 {
+                let case = table.case(constant_case(table, (first + n) as u8));
+                let is_found = found >> n & 1 == 1;
+                assert!(is_found || !case.has_several_sheets(), "{}", first + n);
+                several += u32::from(case.has_several_sheets());
+                all += u32::from(is_found);
+            }
+        }
+        assert!(several > 50 && all < 200, "{several} of {all}");
+    }
 }

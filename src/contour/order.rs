@@ -87,9 +87,10 @@ impl LeafMesh {
         self.mesh.vertices = Vec::new();
 
         let of_leaf = |leaf: usize| self.triangles(LeafId(leaf as u32));
-        let counts: Vec<usize> = (0..leaves).into_par_iter().map(|leaf| of_leaf(leaf).count()).collect();
+        let counts: Vec<usize> = (0..leaves as u32).map(|leaf| self.count(LeafId(leaf))).collect();
         let mut ends = vec![0; leaves + 1];
         for (leaf, count) in counts.iter().enumerate() {
+            debug_assert_eq!(*count, of_leaf(leaf).count(), "a triangle went unseen");
             ends[leaf + 1] = ends[leaf] + count;
         }
         let mut triangles = vec![[0; 3]; ends[leaves]];

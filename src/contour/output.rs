@@ -34,8 +34,8 @@ struct LeafOutput {
 pub struct Triangulation {
     /// The mesh.
     pub mesh: LeafMesh,
-    /// By leaf the feature vertices of polygons that are far from the surface.
-    pub far: Vec<Vec<u32>>,
+    /// The feature vertices of polygons that are far from the surface, of the leaves that have some.
+    pub far: Vec<(LeafId, Vec<u32>)>,
     /// The number of triangles around each crossed edge.
     pub sizes: Vec<u8>,
     /// Counts.
@@ -53,7 +53,7 @@ pub fn triangulate(
     method: CutMethod,
     phase: &PhaseGuard<'_>,
 ) -> Result<Triangulation, ContourError> {
-    let leaves: Vec<LeafId> = cells.signs.leaves().collect();
+    let leaves: Vec<LeafId> = cells.crossings.numbers.leaves().collect();
     let edges = |leaf: LeafId| cells.crossings.numbers.range(leaf).len();
     let mut sizes = vec![0; leaves.iter().map(|&leaf| edges(leaf)).sum()];
     // Nearly all edges have two triangles.
@@ -81,30 +81,33 @@ pub fn triangulate(
     let shared = vertices.len() as u32;
     vertices.reserve_exact(hubs);
     let counts: Vec<usize> = outputs.iter().map(|output| output.count).collect();
-    let ranges = triangles.close_up(slots(), &counts);
-    let cell_runs = leaves.iter().map(|&leaf| (leaf, as_u32(cells.numbers.vertex_range(leaf))));
-    let face_runs = leaves.iter().map(|&leaf| (leaf, faces.range(leaf)));
-    let mut runs: Vec<VertexRun> =
-        cell_runs.chain(face_runs).map(|(leaf, numbers)| VertexRun { leaf, numbers }).collect();
-    for ((output, &leaf), &start) in outputs.iter_mut().zip(&leaves).zip(&ranges) {
+    let starts = triangles.close_up(slots(), &counts);
+    let all = || cells.signs.leaves();
+    let cell_runs = all().map(|leaf| VertexRun { leaf, numbers: as_u32(cells.numbers.vertex_range(leaf)) });
+    let face_runs = all().map(|leaf| VertexRun { leaf, numbers: faces.range(leaf) });
+    let mut runs: Vec<VertexRun> = cell_runs.chain(face_runs).filter(|run| !run.numbers.is_empty()).collect();
+    let mut far = Vec::new();
+    for ((output, &leaf), &start) in outputs.iter_mut().zip(&leaves).zip(&starts) {
         if let Some(own) = output.too_many.take() {
             triangles.put(start, &own);
         }
-        let first = vertices.len() as u32;
         if !output.edge_vertices.is_empty() {
+            let first = vertices.len() as u32;
             for vertex in triangles.corners[start..start + output.count].as_flattened_mut() {
                 *vertex += if *vertex < shared { 0 } else { first - shared };
             }
+            vertices.extend_from_slice(&output.edge_vertices);
+            runs.push(VertexRun { leaf, numbers: first..vertices.len() as u32 });
         }
-        vertices.extend_from_slice(&output.edge_vertices);
-        runs.push(VertexRun { leaf, numbers: first..vertices.len() as u32 });
+        if !output.far.is_empty() {
+            far.push((leaf, std::mem::take(&mut output.far)));
+        }
     }
-    runs.retain(|run| !run.numbers.is_empty());
-    let far = outputs.iter_mut().map(|output| std::mem::take(&mut output.far)).collect();
     let owned = || outputs.iter().zip(&leaves).filter(|(_, leaf)| cells.owns(**leaf));
     let quads: u64 = owned().map(|(output, _)| u64::from(output.quads)).sum();
     let split: u64 = owned().map(|(output, _)| output.edge_vertices.len() as u64).sum();
-    let face_vertices = owned().map(|(_, &leaf)| faces.range(leaf).len() as u64).sum();
+    let of_leaf = |leaf| faces.range(leaf).len() as u64;
+    let face_vertices = all().filter(|&leaf| cells.owns(leaf)).map(of_leaf).sum();
     let statistics = ContourStatistics {
         quads,
         diagonal: quads - split,
@@ -113,7 +116,14 @@ pub fn triangulate(
         ..ContourStatistics::default()
     };
     let Triangles { corners: triangles, edges } = triangles;
-    let (changed, added) = (vec![Vec::new(); leaves.len()], vec![Vec::new(); leaves.len()]);
+    let count = cells.signs.len();
+    let mut ranges = Vec::with_capacity(count + 1);
+    for (leaf, &start) in leaves.iter().zip(&starts) {
+        // For the leaves before that have none, too.
+        ranges.resize(leaf.0 as usize + 1, start);
+    }
+    ranges.resize(count + 1, triangles.len());
+    let (changed, added) = (vec![Vec::new(); count], vec![Vec::new(); count]);
     let mesh = TriMesh { vertices, triangles };
     let mesh = LeafMesh { mesh, ranges, edges, changed, added, runs, gone: Vec::new() };
     Ok(Triangulation { mesh, far, sizes, statistics })
@@ -149,7 +159,7 @@ fn in_leaf(
                 return;
             }
             triangles.clear();
-            let cut = polygonize(&polygon, &envelope, &fit, method, &mut triangles);
+            let cut = polygonize(polygon, &envelope, &fit, method, &mut triangles);
             let hub = || grid.between_walls(node, on_axis(along.0, grid.clamp(along.1)));
             if let Some(surface) = cells.surface
                 && !fit.sides.is_empty()

@@ -35,11 +35,18 @@ pub struct Polygon {
 }
 
 impl Polygon {
-    /// With four corners.
+    /// Gives it these four corners.
     #[inline]
-    pub fn quad([a, b, c, d]: [PolygonCorner; 4]) -> Polygon {
+    pub fn set_quad(&mut self, corners: [PolygonCorner; 4]) {
         // Those beyond the last one mean nothing.
-        Polygon { corners: [a, b, c, d, a, b, c, d], len: 4 }
+        self.corners[..4].copy_from_slice(&corners);
+        self.len = 4;
+    }
+
+    /// Takes all corners out.
+    #[inline]
+    pub fn clear(&mut self) {
+        self.len = 0;
     }
 
     /// Adds a corner after the others.

@@ -76,6 +76,15 @@ impl LeafMesh {
         self.numbers(leaf).filter(|&t| self.mesh.triangles[t] != GONE)
     }
 
+    /// How many they are.
+    pub fn count(&self, leaf: LeafId) -> usize {
+        let n = leaf.0 as usize;
+        // Only what was changed or added can be gone.
+        let moved = self.changed[n].iter().chain(&self.added[n]);
+        let gone = moved.filter(|&&t| self.mesh.triangles[t] == GONE).count();
+        self.ranges[n + 1] - self.ranges[n] + self.added[n].len() - gone
+    }
+
     /// The same, with those that are gone.
     #[inline]
     fn numbers(&self, leaf: LeafId) -> impl Iterator<Item = usize> + '_ {

@@ -117,12 +117,6 @@ impl Case {
         self.sheets.len() > 1
     }
 
-    /// Whether a sheet can get in another one's way on a face of the cell.
-    #[inline]
-    pub fn is_crowded(&self) -> bool {
-        self.ambiguous != 0 || self.has_several_sheets()
-    }
-
     /// The number of the sheet that contains the crossing of `edge`.
     ///
     /// # Panics

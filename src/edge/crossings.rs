@@ -111,6 +111,11 @@ impl EdgeNumbers {
         self.count == 0
     }
 
+    /// The leaves with edges, ascending.
+    pub fn leaves(&self) -> impl ExactSizeIterator<Item = LeafId> + '_ {
+        self.leaves.iter().map(|edges| edges.leaf)
+    }
+
     /// The nodes of `leaf` whose edge along `axis` is intersected.
     #[inline]
     pub fn mask(&self, leaf: LeafId, axis: Axis) -> &LeafMask {
