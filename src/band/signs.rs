@@ -46,8 +46,11 @@ impl SignField {
         assert_eq!(origins.len(), inside.len(), "one mask for each leaf");
         let index = LeafIndex::new(origins);
         let mut all = with_ring(origins);
-        all.retain(|&origin| index.get(origin).is_some() || slab.computes(origin, LEAF_DIM));
-        let ring: Vec<Ijk> = all.iter().copied().filter(|&origin| index.get(origin).is_none()).collect();
+        all.retain(|&origin| slab.computes(origin, LEAF_DIM) || index.get(origin).is_some());
+        let own: Vec<Option<usize>> =
+            all.par_iter().with_min_len(256).map(|&origin| index.get(origin)).collect();
+        let ring: Vec<Ijk> =
+            all.iter().zip(&own).filter(|(_, own)| own.is_none()).map(|(&origin, _)| origin).collect();
         assert_eq!(all.len() - ring.len(), origins.len(), "a leaf was given twice");
         let ring_inside = missing(&ring)?;
         assert_eq!(ring.len(), ring_inside.len(), "one sign for each missing leaf");
@@ -55,13 +58,12 @@ impl SignField {
         let mut of_ring = ring_inside.into_iter();
         // By leaf the number of its mask; uniform ones are numbered on from the others.
         let count = inside.len();
-        let masks: Vec<usize> = all
-            .iter()
-            .map(|&origin| index.get(origin).or_else(|| of_ring.next().map(|i| count + usize::from(i))))
-            .map(|n| n.expect("a sign for each"))
-            .collect();
+        let of_leaf = |own: Option<usize>| {
+            own.or_else(|| of_ring.next().map(|i| count + usize::from(i))).expect("a sign for each")
+        };
+        let masks: Vec<usize> = own.into_iter().map(of_leaf).collect();
         let mask = |n: usize| inside.get(n).copied().unwrap_or(if n == count { [0; 8] } else { [!0; 8] });
-        let inside = masks.par_iter().with_min_len(256).map(|&n| mask(n)).collect();
+        let inside = masks.into_par_iter().with_min_len(256).map(mask).collect();
         let neighbours = LeafIndex::new(&all).around(&all);
         let origins = all;
         Ok(SignField { origins, inside, neighbours, slab })

@@ -174,14 +174,16 @@ impl LeafMesh {
     /// Adds the numbers of the triangles of a leaf that may be where `nodes` tells.
     fn find(&self, leaf: LeafId, nodes: &NodesNear, found: &mut Vec<usize>) {
         let n = leaf.0 as usize;
-        let first = self.ranges[n];
-        let own = &self.edges[first..self.ranges[n + 1]];
-        let mut rest = 0;
-        for axis in 0..3 {
-            let before = |end: u16| own[rest..].partition_point(|&e| e & !CHANGED < AXIS * axis + end);
-            let (from, to) = (rest + before(nodes.first), rest + before(nodes.end));
-            found.extend((from..to).filter(|&t| nodes.may_have(own[t])).map(|t| first + t));
-            rest = to;
+        if !nodes.are_none() {
+            let first = self.ranges[n];
+            let own = &self.edges[first..self.ranges[n + 1]];
+            let mut rest = 0;
+            for axis in 0..3 {
+                let before = |end: u16| own[rest..].partition_point(|&e| e & !CHANGED < AXIS * axis + end);
+                let (from, to) = (rest + before(nodes.first), rest + before(nodes.end));
+                found.extend((from..to).filter(|&t| nodes.may_have(own[t])).map(|t| first + t));
+                rest = to;
+            }
         }
         let moved = self.changed[n].iter().chain(&self.added[n]);
         found.extend(moved.filter(|&&t| self.mesh.triangles[t] != GONE));
@@ -256,6 +258,11 @@ impl NodesNear {
             y.flat_map(|y| z.clone().map(move |z| 1u64 << (LEAF_DIM * y + z))).fold(0, |all, bit| all | bit);
         let plane = |x: i32| (x.clamp(0, LEAF_DIM) * LEAF_DIM * LEAF_DIM) as u16;
         NodesNear { first: plane(x.start), end: plane(x.end), yz }
+    }
+
+    /// Whether no node is in question.
+    fn are_none(&self) -> bool {
+        self.first >= self.end || self.yz == 0
     }
 
     /// Whether triangles of this edge, whose x is in question, may be there and are where they were made.
