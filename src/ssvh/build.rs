@@ -60,10 +60,11 @@ impl Ssvh {
                 Primitive { centroid: ((a + b + c) * (scale / 3.0)).as_vec3(), id }
             })
             .collect();
-        let mut nodes = vec![Node::EMPTY; node_count(count)];
+        // By all threads: they are as large as the triangles.
+        let mut nodes: Vec<Node> = (0..node_count(count)).into_par_iter().map(|_| Node::EMPTY).collect();
         Builder { mesh, centre }.build(&mut primitives, &mut nodes, 0, 0);
 
-        let ids: Vec<u32> = primitives.iter().map(|p| p.id).collect();
+        let ids: Vec<u32> = primitives.par_iter().map(|p| p.id).collect();
         let mut positions = vec![0; count];
         for (position, &id) in ids.iter().enumerate() {
             positions[id as usize] = position as u32;
