@@ -130,6 +130,15 @@ fn fill(
     axis: Axis,
     outside: End,
 ) {
+    let corner = |vertex: u32| PolygonCorner { vertex, position: vertices[vertex as usize] };
+    let quad = |[a, b, c, d]: [PolygonCorner; 4]| match outside {
+        End::High => [a, b, c, d],
+        End::Low => [a, d, c, b],
+    };
+    // Most cells have one sheet, and there are no face vertices.
+    if let Some(vertices) = cells.plain(local.0, axis) {
+        return polygon.set_quad(quad(vertices.map(corner)));
+    }
     let (u, v) = axis.others();
     let around = AROUND.map(|[du, dv]| {
         let mut at = local.0;
@@ -137,7 +146,6 @@ fn fill(
         at[v as usize] += dv;
         (at, Edge::new(axis, -du as u8, -dv as u8))
     });
-    let corner = |vertex: u32| PolygonCorner { vertex, position: vertices[vertex as usize] };
     let cell_vertex = |i: usize| corner(cells.vertex(around[i].0, around[i].1));
     let face_vertex = |i: usize| {
         let (lower, along) = BETWEEN[i];
@@ -145,11 +153,7 @@ fn fill(
         cells.face_vertex(at, [u, v][along], edge).map(corner)
     };
     if !cells.have_face_vertices() {
-        let [a, b, c, d] = [0, 1, 2, 3].map(cell_vertex);
-        return polygon.set_quad(match outside {
-            End::High => [a, b, c, d],
-            End::Low => [a, d, c, b],
-        });
+        return polygon.set_quad(quad([0, 1, 2, 3].map(cell_vertex)));
     }
     polygon.clear();
     for i in 0..4 {

@@ -21,6 +21,8 @@ pub struct LeafCells<'a> {
     cases: [CellCase; SIDE * SIDE * SIDE],
     /// The face vertices, if there are any on these cells.
     faces: Option<&'a FaceVertices>,
+    /// Whether any of these leaves has a crowded cell: only then a cell can have other than one sheet.
+    is_crowded: bool,
 }
 
 /// The place of a cell in the array, from its coordinates in the leaf, -1 to 7 each.
@@ -38,19 +40,25 @@ impl<'a> LeafCells<'a> {
             leaf,
             cases: [CellCase::default(); SIDE * SIDE * SIDE],
             faces: None,
+            is_crowded: false,
         };
         for n in 0..8 {
             let delta = [-(n >> 2), -(n >> 1 & 1), -(n & 1)];
             let Some(other) = cells.signs.neighbour(leaf, delta) else { continue };
+            around.is_crowded |= cells.is_crowded(other);
             if !faces.range(other).is_empty() {
                 around.faces = Some(faces);
             }
             let active = cells.numbers.active(other);
-            let wanted = beside(active, delta);
-            for number in bits(&wanted) {
-                let CellId(cell) = cells.numbers.id(other, number);
-                let local = Ijk::in_leaf(Ijk(delta.map(|d| LEAF_DIM * d)), number);
-                around.cases[place(local.0)] = cells.cell_case(CellId(cell));
+            let place = |number| place(Ijk::in_leaf(Ijk(delta.map(|d| LEAF_DIM * d)), number).0);
+            if other == leaf {
+                for (number, cell) in bits(active).zip(cells.numbers.range(leaf)) {
+                    around.cases[place(number)] = cells.cell_case(CellId(cell as u32));
+                }
+                continue;
+            }
+            for number in bits(&beside(active, delta)) {
+                around.cases[place(number)] = cells.cell_case(cells.numbers.id(other, number));
             }
         }
         around
@@ -60,6 +68,17 @@ impl<'a> LeafCells<'a> {
     #[inline]
     pub fn vertex(&self, local: [i32; 3], edge: Edge) -> u32 {
         self.cases[place(local)].vertex(self.table, edge)
+    }
+
+    /// The vertices of the four cells around the edge from node `local` along `axis`, counter-clockwise seen from its upper end,
+    /// where no cell has several; `None` where some may.
+    #[inline]
+    pub fn plain(&self, local: [i32; 3], axis: Axis) -> Option<[u32; 4]> {
+        const STRIDES: [usize; 3] = [SIDE * SIDE, SIDE, 1];
+        let (u, v) = axis.others();
+        let (place, u, v) = (place(local), STRIDES[u as usize], STRIDES[v as usize]);
+        (!self.is_crowded)
+            .then(|| [place, place - u, place - u - v, place - v].map(|place| self.cases[place].first_vertex))
     }
 
     /// Whether there can be face vertices on these cells.

@@ -42,7 +42,11 @@ impl<'a> LeafCrossings<'a> {
     pub fn new(signs: &SignField, crossings: &'a Crossings, leaf: LeafId) -> LeafCrossings<'a> {
         let numbers = &crossings.numbers;
         let mut around = LeafCrossings { samples: &crossings.samples, numbers: [u32::MAX; 3 * EDGES] };
-        for n in 0..8 {
+        for ((axis, number), id) in numbers.in_leaf(leaf).zip(numbers.range(leaf)) {
+            let local = Ijk::in_leaf(Ijk::default(), number);
+            around.numbers[axis as usize * EDGES + place(local.0)] = id;
+        }
+        for n in 1..8 {
             let delta = [n >> 2, n >> 1 & 1, n & 1];
             let Some(other) = signs.neighbour(leaf, delta) else { continue };
             for axis in Axis::ALL.into_iter().filter(|&axis| delta[axis as usize] == 0) {
