@@ -4,7 +4,7 @@
 use super::cells::Cells;
 use super::feature::REACH;
 use super::order::VertexRun;
-use super::patch::{Bounds, Changes, NEW_TRIANGLE, NEW_VERTEX, Patch, PatchTriangle};
+use super::patch::{Bounds, Changes, NEW_TRIANGLE, NEW_VERTEX, Patch};
 use crate::band::LeafId;
 use crate::lattice::{Ijk, LEAF_DIM};
 use crate::mesh::TriMesh;
@@ -162,10 +162,14 @@ impl LeafMesh {
                 "a triangle left its grid edge unseen"
             );
             // All corners before any of them is looked at: they come from far in memory, side by side that way.
-            corners.clear();
-            corners.extend(found.iter().map(|&n| (self.mesh.triangles[n], self.corners(n))));
-            for (&number, &(vertices, corners)) in found.iter().zip(&corners) {
-                patch.add(PatchTriangle { number, vertices, corners, home: home as u8 });
+            corners.resize(found.len(), [[0.0; 3]; 3]);
+            for (corners, &n) in corners.iter_mut().zip(&found) {
+                for (corner, vertex) in corners.iter_mut().zip(self.mesh.triangles[n]) {
+                    *corner = self.mesh.vertices[vertex as usize];
+                }
+            }
+            for (&number, corners) in found.iter().zip(&corners) {
+                patch.add(number, &self.mesh.triangles[number], corners, home as u8);
             }
         }
         patch

@@ -58,13 +58,13 @@ impl Patch {
         }
     }
 
-    /// Adds a triangle of the mesh if its box meets the bounds. All such triangles must be added before the first
-    /// change.
+    /// Adds triangle `number` of the mesh, of the home with number `home`, if its box meets the bounds. All such triangles must
+    /// be added before the first change.
     #[inline]
-    pub fn add(&mut self, triangle: PatchTriangle) {
-        let around = triangle.bounds();
+    pub fn add(&mut self, number: usize, vertices: &[u32; 3], corners: &[Point; 3], home: u8) {
+        let around = Bounds::of_triangle(*corners);
         if around.meets(&self.bounds) {
-            self.push(triangle, around);
+            self.push(PatchTriangle { number, vertices: *vertices, corners: *corners, home }, around);
         }
     }
 
@@ -126,6 +126,7 @@ impl Patch {
         self.boxes.replace(n, Bounds::NOTHING);
     }
 
+    #[inline]
     fn push(&mut self, triangle: PatchTriangle, bounds: Bounds) {
         self.triangles.push(triangle);
         self.corners.push(triangle.vertices);

@@ -11,7 +11,7 @@ const EVERYWHERE: Bounds = Bounds { lo: [-100.0; 3], hi: [100.0; 3] };
 fn patch_within(mesh: &TriMesh, bounds: Bounds, home: Bounds) -> Patch {
     let mut patch = Patch::new(bounds, [home; 27]);
     for (number, &vertices) in mesh.triangles.iter().enumerate() {
-        patch.add(PatchTriangle { number, vertices, corners: mesh.corners(number), home: 0 });
+        patch.add(number, &vertices, &mesh.corners(number), 0);
     }
     patch
 }
