@@ -31,24 +31,18 @@ impl Triangles {
     /// slots means nothing then. Returns where each part begins, and the number of all.
     pub fn close_up(&mut self, slots: impl Iterator<Item = usize>, counts: &[usize]) -> Vec<usize> {
         let mut ends = vec![0; counts.len() + 1];
-        let mut moves = Vec::with_capacity(counts.len());
+        let mut moves = Vec::new();
         let mut from = 0;
         for (n, (slots, &count)) in slots.zip(counts).enumerate() {
             let to = ends[n];
             ends[n + 1] = to + count;
-            moves.push((from..from + count.min(slots), to));
+            push_piece(&mut moves, from..from + count.min(slots), to);
             from += slots;
         }
         let all = ends[counts.len()];
         self.resize(all.max(from));
-        // Those that go back from the first one on, those that go forth from the last one on: none lands on one that still
-        // waits, since the order stays.
-        for (part, to) in moves.iter().filter(|(part, to)| *to < part.start) {
-            self.shift(part.clone(), *to);
-        }
-        for (part, to) in moves.iter().rev().filter(|(part, to)| *to > part.start) {
-            self.shift(part.clone(), *to);
-        }
+        move_pieces(&mut self.corners, &moves);
+        move_pieces(&mut self.edges, &moves);
         self.resize(all);
         ends
     }
@@ -64,10 +58,26 @@ impl Triangles {
         self.corners.resize(count, [0; 3]);
         self.edges.resize(count, 0);
     }
+}
 
-    fn shift(&mut self, part: Range<usize>, to: usize) {
-        self.corners.copy_within(part.clone(), to);
-        self.edges.copy_within(part, to);
+/// Adds a range of a slice, and where it shall begin, to those that [`move_pieces`] shall move. What goes on where the last one
+/// ends, before and after, is of one piece with it.
+pub fn push_piece(moves: &mut Vec<(Range<usize>, usize)>, piece: Range<usize>, to: usize) {
+    match moves.last_mut() {
+        Some((last, at)) if last.end == piece.start && *at + last.len() == to => last.end = piece.end,
+        _ => moves.push((piece, to)),
+    }
+}
+
+/// Moves ranges of a slice to where they shall begin. They are in order, before and after.
+pub fn move_pieces<T: Copy>(all: &mut [T], moves: &[(Range<usize>, usize)]) {
+    // Those that go back from the first one on, those that go forth from the last one on: none lands on one that still
+    // waits, since the order stays.
+    for (piece, to) in moves.iter().filter(|(piece, to)| *to < piece.start) {
+        all.copy_within(piece.clone(), *to);
+    }
+    for (piece, to) in moves.iter().rev().filter(|(piece, to)| *to > piece.start) {
+        all.copy_within(piece.clone(), *to);
     }
 }
 
