@@ -161,19 +161,21 @@ impl Search<'_> {
     /// The closest triangles of the nodes of a leaf and of the next ones along each axis, -1 where none is known, and their
     /// directions. `around` is the leaf and the next ones, z fastest.
     fn corners(&self, around: [Option<LeafId>; 8]) -> ([i32; NODES], [Directions; NODES]) {
-        let ids = around.map(|leaf| Some(self.near.nodes.of_leaf(leaf?)?.by_node()));
+        let ids = around.map(|leaf| self.near.nodes.of_leaf(leaf?));
+        // All of the leaf itself, and of the next ones the first layers only.
+        let all = ids[0].map(|ids| ids.by_node());
+        let one = |leaf: usize, number| ids[leaf].and_then(|ids| ids.get(number)).map_or(-1, |id| id as i32);
         let (mut triangles, mut sets) = ([-1; NODES], [0; NODES]);
-        for row in 0..SIDE * SIDE {
+        for (row, triangles) in triangles.chunks_exact_mut(SIDE).enumerate() {
             let [x, y] = [row / SIDE, row % SIDE];
             let number = (x & 7) << 6 | (y & 7) << 3;
-            let [own, next] = [0, 1].map(|z| ids[x >> 3 << 2 | y >> 3 << 1 | z].as_ref());
-            let first = row * SIDE;
-            if let Some(own) = own {
-                triangles[first..first + SIDE - 1].copy_from_slice(&own[number..number + SIDE - 1]);
+            let leaf = x >> 3 << 2 | y >> 3 << 1;
+            let (first, last) = triangles.split_at_mut(SIDE - 1);
+            match &all {
+                Some(all) if leaf == 0 => first.copy_from_slice(&all[number..number + SIDE - 1]),
+                _ => (0..).zip(first).for_each(|(z, triangle)| *triangle = one(leaf, number + z)),
             }
-            if let Some(next) = next {
-                triangles[first + SIDE - 1] = next[number];
-            }
+            last[0] = one(leaf | 1, number);
         }
         for (set, &triangle) in sets.iter_mut().zip(&triangles) {
             if triangle >= 0 {
