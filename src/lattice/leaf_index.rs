@@ -46,7 +46,7 @@ impl LeafIndex {
         (n != NO_LEAF).then_some(n as usize)
     }
 
-    /// For each of the leaves that were numbered, in their order, the numbers of the leaves around it, or [`NO_LEAF`]: at
+    /// For each of the leaves that were numbered, in their order, the numbers of the leaves around it, or `u32::MAX`: at
     /// (dx, dy, dz) leaves from it, each -1, 0 or 1, number 9 (dx + 1) + 3 (dy + 1) + (dz + 1). On the current rayon pool.
     pub fn around(&self, origins: &[Ijk]) -> Vec<[u32; 27]> {
         // By block the places of the blocks around it, likewise.
