@@ -30,7 +30,7 @@
 //! | `face_vertex` | vertices on faces where a connection would get in another sheet's way |
 //! | `leaf_cells`, `edge_polygon` | the cells and the polygon around each crossed edge |
 //! | `envelope`, `polygonize` | convex/concave analysis, and the triangles around an edge |
-//! | `output`, `slots` | all polygons, collected to a mesh |
+//! | `output`, `slots` | all polygons, collected to a mesh (`pieces`: what of it is moved) |
 //! | `order` | the finished mesh leaf by leaf, and the part that a slab owns |
 //! | `patch`, `editor`, `rounds` | changes of the finished mesh: the exact test, which to try, leaf by leaf |
 //! | `recover`, `refine` | vertices to places outside of their cells; the mesh to a tolerance |
@@ -60,6 +60,7 @@ mod numbering;
 mod order;
 mod output;
 mod patch;
+mod pieces;
 mod planes;
 mod polygon_edges;
 mod polygonize;

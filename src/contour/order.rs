@@ -3,8 +3,8 @@
 //! While it is made, a mesh has its vertices by kind, and what changes add at the end. That order depends on the whole
 //! lattice. In the order of leaves, the vertices and triangles of some leaves stand together, wherever the rest is made.
 
+use super::pieces::{move_pieces, push_piece};
 use super::rounds::LeafMesh;
-use super::slots::{move_pieces, push_piece};
 use crate::band::LeafId;
 use crate::mesh::TriMesh;
 use crate::run::SHARE;
@@ -76,35 +76,8 @@ impl LeafMesh {
                 }
             },
         );
-        // The first runs, one for each leaf with cells, have nearly all vertices, and stay in order: they are moved where they
-        // are, in one piece as far as they go the same way, and the others put between them.
-        let in_order = self.runs.windows(2).take_while(|pair| pair[0].leaf < pair[1].leaf).count() + 1;
-        let (first_runs, others) = self.runs.split_at(in_order.min(self.runs.len()));
-        let pieces = |run: &VertexRun| {
-            let ends = gone_in(run).iter().copied().chain([run.numbers.end]);
-            let mut from = run.numbers.start;
-            ends.map(move |end| std::mem::replace(&mut from, end + 1)..end)
-        };
-        let mut moves: Vec<(Range<usize>, usize)> = Vec::new();
-        for (run, &start) in first_runs.iter().zip(&starts) {
-            let mut to = start;
-            for piece in pieces(run).map(|piece| piece.start as usize..piece.end as usize) {
-                push_piece(&mut moves, piece.clone(), to);
-                to += piece.len();
-            }
-        }
-        let mut vertices = std::mem::take(&mut self.mesh.vertices);
-        let first_of_others = others.first().map_or(vertices.len(), |run| run.numbers.start as usize);
-        let rest = vertices.split_off(first_of_others);
-        vertices.resize(next.max(first_of_others), [0.0; 3]);
-        move_pieces(&mut vertices, &moves);
-        for (run, &start) in others.iter().zip(&starts[first_runs.len()..]) {
-            let there = pieces(run).flatten().map(|v| rest[v as usize - first_of_others]);
-            for (to, vertex) in vertices[start..].iter_mut().zip(there) {
-                *to = vertex;
-            }
-        }
-        vertices.truncate(next);
+        let vertices = std::mem::take(&mut self.mesh.vertices);
+        let vertices = in_order(vertices, next, &self.runs, &starts, gone_in);
 
         let of_leaf = |leaf: usize| self.triangles(LeafId(leaf as u32));
         let counts: Vec<usize> = (0..leaves as u32).map(|leaf| self.count(LeafId(leaf))).collect();
@@ -122,4 +95,43 @@ impl LeafMesh {
         });
         OrderedMesh { mesh: TriMesh { vertices, triangles }, vertices: firsts, triangles: ends }
     }
+}
+
+/// The `count` vertices of `runs` that are not gone, where each run begins in `starts`; `gone_in` says which are gone.
+fn in_order<'a>(
+    mut vertices: Vec<[f64; 3]>,
+    count: usize,
+    runs: &[VertexRun],
+    starts: &[usize],
+    gone_in: impl Fn(&VertexRun) -> &'a [u32],
+) -> Vec<[f64; 3]> {
+    // The first runs, one for each leaf with cells, have nearly all vertices, and stay in order: they are moved where they
+    // are, in one piece as far as they go the same way, and the others put between them.
+    let ascending = runs.windows(2).take_while(|pair| pair[0].leaf < pair[1].leaf).count() + 1;
+    let (first_runs, others) = runs.split_at(ascending.min(runs.len()));
+    let pieces = |run: &VertexRun| {
+        let ends = gone_in(run).iter().copied().chain([run.numbers.end]);
+        let mut from = run.numbers.start;
+        ends.map(move |end| std::mem::replace(&mut from, end + 1)..end)
+    };
+    let mut moves: Vec<(Range<usize>, usize)> = Vec::new();
+    for (run, &start) in first_runs.iter().zip(starts) {
+        let mut to = start;
+        for piece in pieces(run).map(|piece| piece.start as usize..piece.end as usize) {
+            push_piece(&mut moves, piece.clone(), to);
+            to += piece.len();
+        }
+    }
+    let first_of_others = others.first().map_or(vertices.len(), |run| run.numbers.start as usize);
+    let rest = vertices.split_off(first_of_others);
+    vertices.resize(count.max(first_of_others), [0.0; 3]);
+    move_pieces(&mut vertices, &moves);
+    for (run, &start) in others.iter().zip(&starts[first_runs.len()..]) {
+        let there = pieces(run).flatten().map(|v| rest[v as usize - first_of_others]);
+        for (to, vertex) in vertices[start..].iter_mut().zip(there) {
+            *to = vertex;
+        }
+    }
+    vertices.truncate(count);
+    vertices
 }
