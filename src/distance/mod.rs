@@ -7,5 +7,5 @@ mod signed;
 #[cfg(test)]
 mod tests;
 
-pub use depth::largest_depth;
+pub use depth::{Depth, largest_depth};
 pub use signed::{Sample, SignedDistance};

@@ -1,5 +1,6 @@
 use super::*;
 use crate::mesh::{Topology, TriMesh};
+use crate::run::RunSettings;
 use glam::DVec3;
 use proptest::prelude::*;
 
@@ -139,7 +140,43 @@ fn the_gradient_points_outward_on_both_sides() {
 #[test]
 fn the_depth_of_a_box_is_half_its_thickness() {
     let mesh = cuboid([1.0, 0.3, 2.0], DVec3::new(5.0, 0.1, -3.0));
+    let depth = depth_of(&mesh, 1e-3);
+    assert!((0.3 * 0.998..=0.3 + 1e-12).contains(&depth.at_least), "{depth:?}");
+    assert!((0.3 - 1e-12..=0.3 * 1.002).contains(&depth.at_most), "{depth:?}");
+}
+
+/// How deep a mesh is.
+fn depth_of(mesh: &TriMesh, relative: f64) -> Depth {
+    let topology = Topology::new(mesh);
+    let run = RunSettings::with_threads(1).unwrap();
+    largest_depth(&SignedDistance::new(mesh, &topology), relative, &run).unwrap()
+}
+
+#[test]
+fn the_depth_of_plates_and_needles_is_bounded_in_a_bounded_search() {
+    // Every part of a plate is as deep as any other: a search that has to look at all of it does not end.
+    for half in [[127.5, 138.5, 1.5], [100.0, 1e-3, 1e-3], [5.0, 4.0, 1e-9]] {
+        let thinnest = half[1].min(half[2]);
+        let depth = depth_of(&cuboid(half, DVec3::ZERO), 1e-3);
+        assert!(depth.at_least <= thinnest * (1.0 + 1e-12), "{half:?}: {depth:?}");
+        assert!((thinnest * (1.0 - 1e-12)..=1.01 * thinnest + 1e-3).contains(&depth.at_most), "{half:?}: {depth:?}");
+    }
+    // Tilted, its bounding box is not thin.
+    let mut tilted = cuboid([127.5, 138.5, 1.5], DVec3::ZERO);
+    let turn = glam::DQuat::from_euler(glam::EulerRot::XYZ, 0.4, 0.7, 0.2);
+    for v in &mut tilted.vertices {
+        *v = (turn * DVec3::from(*v)).to_array();
+    }
+    let depth = depth_of(&tilted, 1e-3);
+    assert!(depth.at_least <= 1.5 + 1e-9 && (1.5 - 1e-9..8.0).contains(&depth.at_most), "{depth:?}");
+}
+
+#[test]
+fn the_search_for_the_deepest_point_can_be_cancelled() {
+    let mesh = cuboid([100.0, 1.0, 90.0], DVec3::ZERO);
     let topology = Topology::new(&mesh);
-    let depth = largest_depth(&SignedDistance::new(&mesh, &topology), 1e-3);
-    assert!((0.3 * 0.998..=0.3 + 1e-12).contains(&depth), "{depth}");
+    let run = RunSettings::with_threads(1).unwrap();
+    run.cancel_token().cancel();
+    let depth = largest_depth(&SignedDistance::new(&mesh, &topology), 1e-9, &run);
+    assert!(depth.is_err(), "{depth:?}");
 }

@@ -84,7 +84,7 @@ pub fn offset_in_slabs(
                 }
             }
             if is_empty && matches!(cut, Cut::Memory(_)) {
-                return Err(EmptyResult::explain(distance, band_settings).into());
+                return Err(EmptyResult::explain(distance, band_settings, run)?.into());
             }
             statistics.slabs = slabs.len();
             statistics.unseen = Unseen::new(lost);

@@ -103,7 +103,7 @@ pub fn offset_band(
         let band = stored.finish();
         statistics.times.band += started.elapsed().as_secs_f64();
         if statistics.vdb.leaves == 0 {
-            return Err(EmptyResult::explain(distance, band_settings).into());
+            return Err(EmptyResult::explain(distance, band_settings, run)?.into());
         }
         statistics.set_memory(Some(&band));
         Ok(OffsetResult { mesh: TriMesh::default(), band: Some(band), statistics })
@@ -156,7 +156,7 @@ fn on_lattice(
     let mut stored = settings.keep_band.then(|| StoredBand::new(band_settings)).transpose()?;
     let done = on_slab(distance, settings, band_settings, stored.as_mut(), &mut statistics, run)?;
     let Some((SlabContour { mesh, .. }, lost)) = done else {
-        return Err(EmptyResult::explain(distance, band_settings).into());
+        return Err(EmptyResult::explain(distance, band_settings, run)?.into());
     };
     statistics.unseen = Unseen::new(lost);
     statistics.slabs = 1;

@@ -6,6 +6,7 @@ use crate::distance::{SignedDistance, largest_depth};
 use crate::edge::TooManyEdges;
 use crate::geom::aabb::Aabb;
 use crate::mesh::{Topology, TriMesh, measure};
+use crate::run::{Cancelled, RunSettings};
 use glam::DVec3;
 
 /// The input is not the boundary of a solid.
@@ -185,38 +186,52 @@ pub fn available_memory() -> Option<u64> {
 pub enum EmptyResult {
     /// The model is nowhere as deep as the shrink.
     #[error(
-        "nothing is left at distance {distance}: the model is at most {depth:.6} deep, so any distance \
-         below -{depth:.6} leaves nothing"
+        "nothing is left at distance {distance}: the model is at most {} deep, so any distance below -{} \
+         leaves nothing", figure(*.depth), figure(*.depth)
     )]
     TooDeep {
         /// The offset distance, negative.
         distance: f64,
-        /// The radius of the largest ball inside the model.
+        /// No ball inside the model has a larger radius.
         depth: f64,
     },
-    /// Something is left, but no node of the lattice is in it.
+    /// No node of the lattice is inside the offset solid, and it may be there all the same.
     #[error(
-        "the offset solid at distance {distance} is too thin for voxel size {voxel}: no lattice node lies \
-         inside it (the model is {depth:.6} deep at most); choose a smaller voxel size"
+        "the offset solid at distance {distance} is empty or too thin for voxel size {voxel}: no lattice node \
+         lies inside it (the model is at most {} deep); choose a smaller voxel size", figure(*.depth)
     )]
     TooThin {
         /// The offset distance.
         distance: f64,
         /// The voxel size.
         voxel: f64,
-        /// The radius of the largest ball inside the model.
+        /// No ball inside the model has a larger radius.
         depth: f64,
     },
 }
 
 impl EmptyResult {
-    pub(super) fn explain(distance: &SignedDistance, settings: &BandSettings) -> Self {
+    /// Searches how deep the model is, and says which of the two it is.
+    ///
+    /// # Errors
+    /// When the run is cancelled meanwhile.
+    pub(super) fn explain(
+        distance: &SignedDistance,
+        settings: &BandSettings,
+        run: &RunSettings,
+    ) -> Result<Self, Cancelled> {
         let (r, voxel) = (settings.r, settings.lattice.voxel);
-        let depth = largest_depth(distance, 1e-3);
-        if r + depth * 1.001 < 0.0 {
+        let depth = largest_depth(distance, 1e-3, run)?.at_most;
+        Ok(if r + depth < 0.0 {
             EmptyResult::TooDeep { distance: r, depth }
         } else {
             EmptyResult::TooThin { distance: r, voxel, depth }
-        }
+        })
     }
+}
+
+/// A length with six significant digits.
+fn figure(x: f64) -> String {
+    let digits = 5 - x.abs().max(f64::MIN_POSITIVE).log10().floor() as i32;
+    if (0..12).contains(&digits) { format!("{x:.0$}", digits as usize) } else { format!("{x:.5e}") }
 }
