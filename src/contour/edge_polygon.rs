@@ -27,6 +27,8 @@ pub struct EdgePolygon<'a> {
     pub number: u16,
     /// The crossing, in voxels from that node.
     pub along: (Axis, f64),
+    /// See [`Crossing::is_jump`](crate::edge::Crossing::is_jump).
+    pub is_jump: bool,
 }
 
 /// Hands the polygons around the crossed edges that start in `leaf` to `visit`, in the order of the edges.
@@ -81,8 +83,8 @@ pub fn for_polygons(
             };
             let fit = Fit::new(point, sample.normal.map(f64::from), sides, grid.voxel());
             let (piece, number) = (sample.triangle, number as u16);
-            let polygon = &polygon;
-            visit(EdgePolygon { polygon, envelope, fit, piece, node, number, along: (axis, sample.t) });
+            let (polygon, along, is_jump) = (&polygon, (axis, sample.t), sample.is_jump());
+            visit(EdgePolygon { polygon, envelope, fit, piece, node, number, along, is_jump });
         }
     }
 }

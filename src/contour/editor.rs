@@ -33,6 +33,10 @@ const SHARES: [f64; 4] = [1.0, 0.75, 0.5, 0.25];
 /// A part of the way must bring the vertex of a split nearer by this factor.
 const GOOD_PART: f64 = 0.8;
 
+/// Nothing is nearer to the surface by a split when it is farther away than this, in voxels: each vertex of the mesh was made
+/// in a cell that the surface passes through, within sqrt(3) voxels, unless the sign of the distance jumps there.
+const JUMP: f64 = 2.0;
+
 /// The most splits that come of one vertex. Where the surface jumps, splits do not bring it nearer, and would go on
 /// without end.
 const MOST_SPLITS: u64 = 12;
@@ -146,7 +150,7 @@ impl Editor<'_> {
         let sides = self.sides(&t);
         let errors = places.map(|p| self.error(p, &sides));
         let worst = (0..4).max_by(|&i, &j| errors[i].total_cmp(&errors[j]))?;
-        (errors[worst] > self.tolerance).then_some((worst, places[worst]))
+        (errors[worst] > self.tolerance && errors[worst] < JUMP).then_some((worst, places[worst]))
     }
 
     /// Splits a triangle, or an edge of it, where it is farthest from the surface, or merges the ends of an edge if

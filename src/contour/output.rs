@@ -153,7 +153,7 @@ fn in_leaf(
         faces,
         vertices,
         leaf,
-        |EdgePolygon { polygon, envelope, fit, piece, node, number, along }| {
+        |EdgePolygon { polygon, envelope, fit, piece, node, number, along, is_jump }| {
             let size = sizes.next();
             if is_open && polygon.corners().iter().any(|corner| is_missing(corner.position)) {
                 return;
@@ -162,6 +162,7 @@ fn in_leaf(
             let cut = polygonize(polygon, &envelope, &fit, method, &mut triangles);
             let hub = || grid.between_walls(node, on_axis(along.0, grid.clamp(along.1)));
             if let Some(surface) = cells.surface
+                && !is_jump
                 && !fit.sides.is_empty()
             {
                 let corners = polygon.corners();

@@ -80,14 +80,17 @@ pub fn place<'a>(
     let edges = case.sheets()[sheet].edges;
     let mut qef = Qef::default();
     let mut samples = Samples::default();
-    let mut piece = 0;
+    let (mut piece, mut is_jump) = (0, false);
     for edge in edges.iter() {
         let crossing = crossing(edge);
         let (point, normal) = sample(edge, crossing);
         qef.add(point, normal);
         samples.push(point, normal, crossing.triangle);
         piece = crossing.triangle;
+        is_jump |= crossing.is_jump();
     }
+    // Where the sign jumps, the surface is far away and has nothing to say.
+    let surface = surface.filter(|_| !is_jump);
     let mut minimiser = qef.minimiser();
     let mut found = None;
     if let Some(surface) = surface {

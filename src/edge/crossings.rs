@@ -162,10 +162,20 @@ impl EdgeNumbers {
 pub struct Crossing {
     /// Position along the edge, in voxels from its lower node, in 0..=1.
     pub t: f64,
-    /// Unit normal of the offset surface at the crossing, pointing out of the offset solid.
+    /// Unit normal of the offset surface at the crossing, pointing out of the offset solid; zero where the sign jumps
+    /// and no surface is near.
     pub normal: [f32; 3],
     /// The triangle whose offset crosses there; 0 where nobody knows.
     pub triangle: u32,
+}
+
+impl Crossing {
+    /// Whether the sign of the distance jumps there, far from the surface. That happens where the input is open, or
+    /// intersects itself.
+    #[inline]
+    pub fn is_jump(&self) -> bool {
+        self.normal == [0.0; 3]
+    }
 }
 
 /// The crossings of all intersected edges, by [`EdgeId`].

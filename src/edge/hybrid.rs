@@ -200,7 +200,7 @@ impl Solver<'_> {
 
     pub(super) fn jump(&self, edge: &GridEdge, t: f64, statistics: &mut EdgeStatistics) -> Root {
         statistics.sign_jumps += 1;
-        Root { t, normal: (edge.outside - edge.inside) / self.voxel, triangle: edge.hint }
+        Root { t, normal: DVec3::ZERO, triangle: edge.hint }
     }
 
     pub(super) fn finish(&self, edge: &GridEdge, end: End) -> Root {
