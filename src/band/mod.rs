@@ -9,6 +9,7 @@ mod jumps;
 mod layers;
 mod leaf;
 mod leaves;
+mod lone_nodes;
 mod ring;
 mod signs;
 #[cfg(test)]
@@ -23,4 +24,5 @@ pub use inside::InsideBlocks;
 pub use jumps::leaves_at_jumps;
 pub use layers::{Layers, count_layers};
 pub use leaves::{LeafBatch, inside_mask};
+pub use lone_nodes::{LoneNodes, join_lone_nodes};
 pub use signs::{LeafId, SignField};

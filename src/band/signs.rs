@@ -104,6 +104,13 @@ impl SignField {
         &self.inside[leaf.0 as usize]
     }
 
+    /// Moves some nodes of a leaf to the other side of the surface.
+    pub(super) fn change_sides(&mut self, leaf: LeafId, nodes: &LeafMask) {
+        for (word, change) in self.inside[leaf.0 as usize].iter_mut().zip(nodes) {
+            *word ^= change;
+        }
+    }
+
     /// The neighbouring leaf `delta` leaves away, each component -1, 0 or 1; `None` beyond the ring.
     pub fn neighbour(&self, leaf: LeafId, delta: [i32; 3]) -> Option<LeafId> {
         let n = self.neighbours[leaf.0 as usize][neighbour_slot(delta)];

@@ -1,7 +1,7 @@
 //! The band as the edges and the contour need it, in plain arrays; and into OpenVDB, where it is to be kept.
 
 use super::stored_band::StoredBand;
-use crate::band::{self, BOXES_PER_BATCH, BandSettings, InsideBlocks, LeafBatch, LeafMask, SignField};
+use crate::band::{self, BOXES_PER_BATCH, BandSettings, InsideBlocks, LeafBatch, LeafMask, LoneNodes, SignField};
 use crate::candidates::{BlockLists, CandidateLists};
 use crate::distance::SignedDistance;
 use crate::edge::{NearTriangles, NodeTriangles, PartTriangles};
@@ -27,6 +27,8 @@ pub(crate) struct BandCounts {
     pub(crate) filter: FilterStatistics,
     pub(crate) active_voxels: u64,
     pub(crate) leaves: u64,
+    /// Of a band that is contoured.
+    pub(crate) lone_nodes: LoneNodes,
 }
 
 /// What is asked of the leaves once they are made.
@@ -48,7 +50,10 @@ pub(crate) fn build(
     let (parts, counts) = Parts::collect(distance, settings, Next::Contour, stored, run)?;
     run.install(|| {
         let ring = |nodes: &[Ijk]| Ok::<_, Error>(parts.blocks.contain(nodes));
-        let signs = SignField::new(&parts.origins, &parts.inside, settings.slab, ring)?;
+        let mut signs = SignField::new(&parts.origins, &parts.inside, settings.slab, ring)?;
+        let BandSettings { lattice, r, slab, .. } = *settings;
+        let lone_nodes = band::join_lone_nodes(&mut signs, distance, r, lattice, slab);
+        let counts = BandCounts { lone_nodes, ..counts };
         let nodes = NodeTriangles::new(&signs, &parts.origins, parts.closest);
         let lists = CandidateLists::new(settings.lattice, parts.lists);
         Ok(NarrowBand { signs, near: NearTriangles { nodes, lists: Some(lists) }, counts })

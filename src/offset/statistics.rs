@@ -1,7 +1,7 @@
 //! What happened during an offset: the parts of the statistics file that the engine knows.
 
 use super::narrow_band::BandCounts;
-use crate::band::BandSettings;
+use crate::band::{BandSettings, LoneNodes};
 use crate::contour::ContourStatistics;
 use crate::edge::EdgeStatistics;
 use crate::filter::FilterStatistics;
@@ -24,6 +24,8 @@ pub struct OffsetStatistics {
     pub edges: EdgeStatistics,
     /// Cells, polygons, vertices.
     pub contour: ContourStatistics,
+    /// Nodes without a neighbour on their side of the surface.
+    pub lone_nodes: LoneNodes,
     /// What the lattice could not see.
     pub unseen: Unseen,
     /// Slabs that were worked off one after the other.
@@ -48,6 +50,7 @@ impl OffsetStatistics {
         self.filter.nodes_total = nodes_total;
         self.vdb.active_voxels += counts.active_voxels;
         self.vdb.leaves += counts.leaves;
+        self.lone_nodes += counts.lone_nodes;
     }
 
     /// The memory of the band, where it is kept.

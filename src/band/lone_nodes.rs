@@ -1,0 +1,208 @@
+//! Nodes that are alone on their side of the surface although they are part of something larger.
+//!
+//! The tip of a corner can hold a node whose six neighbours lie outside. The contour would make a body of its own of
+//! it, a hair away from the body that it is the tip of:
+//!
+//! ```text
+//!      outside   .      outside              The tip's node touches the others across the diagonal of a cell only. It
+//!               / \                         changes sides, and the contour finds the corner from the cells beside it,
+//!      outside / o \    outside             like all corners that lie outside of the cells that see them.
+//!    ---------/     \---------
+//!      o        o        o
+//! ```
+//!
+//! A node that is all that there is of a small part stays: no other node of its side can be reached from it.
+
+use super::signs::{LeafId, SignField};
+use crate::distance::SignedDistance;
+use crate::lattice::{Ijk, LeafMask, Lattice, Z_FIRST, Z_LAST, bits};
+use crate::run::SHARE;
+use crate::slab::Slab;
+use glam::DVec3;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::ops::AddAssign;
+
+/// How far from a lone node others are looked for, along each axis. Corners as sharp as those of a box have one next to it,
+/// across a diagonal; those of needles farther away.
+const REACH: i32 = 2;
+
+/// Nodes that the way is tried to, at most, the nearest first.
+const MOST_TRIED: usize = 8;
+
+/// Parts of the way to another node at whose ends the surface must not have been crossed.
+const STEPS: i32 = 8;
+
+/// Counts of lone nodes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct LoneNodes {
+    /// Those that changed sides.
+    pub joined: u64,
+    /// Those that make a body, or a cavity, of their own.
+    pub alone: u64,
+}
+
+impl AddAssign for LoneNodes {
+    fn add_assign(&mut self, other: LoneNodes) {
+        self.joined += other.joined;
+        self.alone += other.alone;
+    }
+}
+
+/// Lets lone nodes of something larger change sides, on the current rayon pool. Counts those that `slab` owns.
+pub fn join_lone_nodes(
+    signs: &mut SignField,
+    distance: &SignedDistance,
+    r: f64,
+    lattice: Lattice,
+    slab: Slab,
+) -> LoneNodes {
+    let field = &*signs;
+    let leaves: Vec<LeafId> = field.leaves().collect();
+    let lone: Vec<LeafMask> =
+        leaves.par_iter().with_min_len(16).with_max_len(SHARE).map(|&leaf| lone_in(field, leaf)).collect();
+    let is_lone = |leaf: LeafId, number: usize| lone[leaf.0 as usize][number >> 6] >> (number & 63) & 1 == 1;
+    let is_inside = |leaf, number: usize| field.inside(leaf)[number >> 6] >> (number & 63) & 1 == 1;
+    let joins = |leaf: LeafId, number: usize| {
+        let local = Ijk::in_leaf(Ijk::default(), number);
+        let side = is_inside(leaf, number);
+        let from = DVec3::from(lattice.world_from_index(field.origin(leaf) + local));
+        let mut near: Vec<DVec3> = Vec::new();
+        for n in 0..(2 * REACH + 1).pow(3) {
+            let width = 2 * REACH + 1;
+            let delta = Ijk([n / width / width, n / width % width, n % width].map(|d| d - REACH));
+            let other = field.locate(leaf, (local + delta).0);
+            if other.is_some_and(|(leaf, n)| is_inside(leaf, n) == side && !is_lone(leaf, n)) {
+                near.push(lattice.voxel * DVec3::from(delta.0.map(f64::from)));
+            }
+        }
+        // The nearest first; those of equal length in their order.
+        near.sort_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
+        let is_free = |way: &DVec3| {
+            let mut guess = 0;
+            (1..STEPS).all(|n| {
+                let sample = distance.at(from + *way * (f64::from(n) / f64::from(STEPS)), guess);
+                guess = sample.triangle;
+                (sample.distance - r < 0.0) == side
+            })
+        };
+        near.iter().take(MOST_TRIED).any(is_free)
+    };
+    let found: Vec<(LeafId, LeafMask)> = leaves
+        .par_iter()
+        .with_min_len(16)
+        .with_max_len(SHARE)
+        .filter(|leaf| lone[leaf.0 as usize] != [0; 8])
+        .map(|&leaf| {
+            let mut joined = [0; 8];
+            for number in bits(&lone[leaf.0 as usize]).filter(|&number| joins(leaf, number)) {
+                joined[number >> 6] |= 1 << (number & 63);
+            }
+            (leaf, joined)
+        })
+        .collect();
+    let count = |mask: &LeafMask| mask.iter().map(|word| u64::from(word.count_ones())).sum::<u64>();
+    let mut counts = LoneNodes::default();
+    for (leaf, joined) in found {
+        if slab.owns(signs.origin(leaf)) {
+            counts.joined += count(&joined);
+            counts.alone += count(&lone[leaf.0 as usize]) - count(&joined);
+        }
+        signs.change_sides(leaf, &joined);
+    }
+    counts
+}
+
+/// The nodes of a leaf whose six neighbours are all on the other side. Where the field ends, neighbours count as being on
+/// the same side.
+fn lone_in(signs: &SignField, leaf: LeafId) -> LeafMask {
+    let own = signs.inside(leaf);
+    if *own == [0; 8] || *own == [!0; 8] {
+        // Whole leaves have neighbours of their own.
+        return [0; 8];
+    }
+    let beside = |delta: [i32; 3]| signs.neighbour(leaf, delta).map(|n| signs.inside(n));
+    let around = [[-1, 0, 0], [1, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1]].map(beside);
+    std::array::from_fn(|x| {
+        let word = own[x];
+        let layer = |n: usize, at: usize| around[n].map(|mask| mask[at]);
+        // The word of the next layer, of the next row and of the next node, and what comes there from the next leaf.
+        let low_x = if x > 0 { Some(own[x - 1]) } else { layer(0, 7) };
+        let high_x = if x < 7 { Some(own[x + 1]) } else { layer(1, 0) };
+        let low_y = layer(2, x).map(|other| word << 8 | other >> 56);
+        let high_y = layer(3, x).map(|other| word >> 8 | other << 56);
+        let low_z = layer(4, x).map(|other| (word << 1 & !Z_FIRST) | (other & Z_LAST) >> 7);
+        let high_z = layer(5, x).map(|other| (word >> 1 & !Z_LAST) | (other & Z_FIRST) << 7);
+        let differs = [low_x, high_x, low_y, high_y, low_z, high_z].map(|next| next.map_or(0, |n| word ^ n));
+        differs.into_iter().fold(!0, |all, one| all & one)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lattice::{LEAF_DIM, LEAF_SIZE};
+    use crate::mesh::{Topology, shapes};
+    use std::convert::Infallible;
+
+    fn field(rule: impl Fn(Ijk) -> bool) -> SignField {
+        let origins: Vec<Ijk> =
+            (0..27).map(|n| Ijk([n / 9, n / 3 % 3, n % 3].map(|d| LEAF_DIM * (d - 1)))).collect();
+        let mask = |origin: &Ijk| {
+            let mut mask = [0; 8];
+            for n in (0..LEAF_SIZE).filter(|&n| rule(Ijk::in_leaf(*origin, n))) {
+                mask[n >> 6] |= 1 << (n & 63);
+            }
+            mask
+        };
+        let masks: Vec<LeafMask> = origins.iter().map(mask).collect();
+        SignField::new(&origins, &masks, Slab::WHOLE, |ring| Ok::<_, Infallible>(vec![false; ring.len()]))
+            .unwrap()
+    }
+
+    #[test]
+    fn lone_nodes_are_those_without_a_neighbour_on_their_side() {
+        // Scrambled, so that every word and shift is exercised; uniform beside the ring.
+        let rule = |n: Ijk| {
+            let [i, j, k] = n.0;
+            let scrambled = (i * 7 + j * 13 + k * 29 + i * j * k).rem_euclid(11) < 2;
+            n.0.iter().all(|&x| (-8..16).contains(&x)) && scrambled
+        };
+        let field = field(rule);
+        let mut count = 0;
+        for leaf in field.leaves() {
+            let lone = lone_in(&field, leaf);
+            for number in 0..LEAF_SIZE {
+                let node = Ijk::in_leaf(field.origin(leaf), number);
+                let neighbours = (0..6).map(|n| {
+                    let mut at = node;
+                    at.0[n / 2] += if n % 2 == 0 { 1 } else { -1 };
+                    at
+                });
+                let expected = neighbours.filter(|&at| rule(at) == rule(node)).count() == 0;
+                assert_eq!(lone[number >> 6] >> (number & 63) & 1 == 1, expected, "{node:?}");
+                count += u32::from(expected);
+            }
+        }
+        assert!(count > 100, "{count}");
+    }
+
+    #[test]
+    fn a_tip_changes_sides_and_a_small_part_does_not() {
+        // The signs of a cube's nodes, with one more node inside of it and one far away from it taken for lone ones.
+        let mesh = shapes::cube(1);
+        let topology = Topology::new(&mesh);
+        let distance = SignedDistance::new(&mesh, &topology);
+        let lattice = Lattice { voxel: 0.25 };
+        let (tip, part) = (Ijk::new(3, 3, 3), Ijk::new(9, 9, 9));
+        let mut signs = field(|n| n.0.iter().all(|x| x.abs() <= 2) || n == tip || n == part);
+        let counts = join_lone_nodes(&mut signs, &distance, 0.0, lattice, Slab::WHOLE);
+        assert_eq!(counts, LoneNodes { joined: 1, alone: 1 });
+        let is_inside = |node: Ijk| {
+            let leaf = signs.leaves().find(|&l| signs.origin(l) == node.leaf_origin()).unwrap();
+            let n = node.number_in_leaf();
+            signs.inside(leaf)[n >> 6] >> (n & 63) & 1 == 1
+        };
+        assert!(!is_inside(tip) && is_inside(part) && is_inside(Ijk::new(2, 2, 2)));
+    }
+}
