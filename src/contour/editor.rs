@@ -59,6 +59,10 @@ pub struct Editor<'a> {
     pub piece: u32,
     /// How far points are from the surface, in voxels.
     pub answers: Answers,
+    /// Splits that may still be made.
+    pub splits_left: u64,
+    /// Vertices whose splits ended at a limit.
+    pub given_up: u64,
 }
 
 impl<'a> Editor<'a> {
@@ -71,7 +75,8 @@ impl<'a> Editor<'a> {
         trusting: bool,
     ) -> Editor<'a> {
         let (grid, features) = (&cells.grid, &cells.features);
-        Editor { patch, surface, grid, features, tolerance, trusting, piece: 0, answers: Answers::new() }
+        let (piece, answers, splits_left, given_up) = (0, Answers::new(), u64::MAX, 0);
+        Editor { patch, surface, grid, features, tolerance, trusting, piece, answers, splits_left, given_up }
     }
 }
 
@@ -122,11 +127,13 @@ impl Editor<'_> {
             next += 1;
             let mut open = self.patch.star(vertex);
             while let Some(n) = open.pop() {
-                if split == MOST_SPLITS {
+                if split == MOST_SPLITS || self.splits_left == 0 {
+                    self.given_up += u64::from(self.worst(n).is_some());
                     return split;
                 }
                 let Some(new) = self.improve(n) else { continue };
                 split += 1;
+                self.splits_left -= 1;
                 vertices.push(new);
                 self.flip_around(new);
                 open.retain(|&n| self.patch.triangle_at(n).vertices.contains(&vertex));

@@ -250,6 +250,7 @@ pub fn contour_slab(
             statistics.merged = recovered.merged;
             statistics.flipped = recovered.flipped;
             statistics.refined = recovered.split;
+            statistics.given_up = recovered.given_up;
             if let Some(tolerance) = settings.tolerance {
                 let refined = refine::refine(&cells, surface, tolerance, &mut mesh, run)?;
                 statistics.recovered += refined.moved;

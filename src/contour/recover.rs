@@ -22,6 +22,10 @@ type Point = [f64; 3];
 /// Around features, triangles and edges that are farther from the surface than this, in voxels, are split.
 const TOLERANCE: f64 = 0.03;
 
+/// Splits for each cell of a leaf, at most, in one pass. Models with a crease in every cell take 1.2 (armadillo at 64 voxels);
+/// where more are asked for, the surface has its features at a scale that the lattice does not, and has no end of them.
+const SPLITS_PER_CELL: usize = 4;
+
 /// Shares of the way to its place that a vertex goes if it cannot go all of it.
 const SHARES: [f64; 4] = [0.98, 0.9, 0.75, 0.5];
 
@@ -47,6 +51,8 @@ pub struct Recovered {
     pub flipped: u64,
     /// Triangles and edges split.
     pub split: u64,
+    /// Vertices around which splits ended at a limit, and the surface is still far.
+    pub given_up: u64,
 }
 
 /// What is done in one pass over the mesh.
@@ -88,6 +94,7 @@ pub fn recover(
             },
             |leaf, patch| {
                 let mut editor = Editor::new(patch, surface, cells, TOLERANCE, true);
+                editor.splits_left = (SPLITS_PER_CELL * cells.numbers.range(leaf).len()) as u64;
                 let done = editor.grant_all(&wishes[leaf.0 as usize], stage);
                 (editor.patch, (leaf, done))
             },
@@ -100,6 +107,7 @@ pub fn recover(
                 recovered.merged += done.merged;
                 recovered.flipped += done.flipped;
                 recovered.split += done.split;
+                recovered.given_up += done.given_up;
             },
         )?;
         open = next;
@@ -133,6 +141,7 @@ impl Editor<'_> {
             }
         }
         recovered.refused = open.len() as u64;
+        recovered.given_up = self.given_up;
         let is_open = !open.is_empty()
             || match stage {
                 Stage::Grant => {

@@ -30,6 +30,8 @@ pub struct ContourStatistics {
     pub flipped: u64,
     /// Vertices added where the surface was too far away.
     pub refined: u64,
+    /// Times that adding vertices around one ended at its limit, with the surface still too far away.
+    pub given_up: u64,
     /// Triangles that are farther from the surface than the tolerance all the same; `None` without a tolerance.
     pub beyond_tolerance: Option<u64>,
     /// Vertices of the result.
@@ -52,6 +54,7 @@ impl AddAssign for ContourStatistics {
         self.merged += other.merged;
         self.flipped += other.flipped;
         self.refined += other.refined;
+        self.given_up += other.given_up;
         self.beyond_tolerance = match (self.beyond_tolerance, other.beyond_tolerance) {
             (Some(a), Some(b)) => Some(a + b),
             (a, b) => a.or(b),
