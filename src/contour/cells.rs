@@ -9,6 +9,7 @@ use super::numbering::{CellId, CellNumbers};
 use super::recover::Wish;
 use super::sheets::{Case, CaseId, CaseTable};
 use super::surface::Surface;
+use super::vertex_set::VertexSet;
 use crate::band::{LeafId, SignField};
 use crate::edge::Crossings;
 use crate::run::{Cancelled, PhaseGuard, SHARE};
@@ -34,6 +35,9 @@ pub struct Cells<'a> {
     pub surface: Option<&'a dyn Surface>,
     /// The vertices on creases and corners.
     pub features: Features,
+    /// The vertices of cells with a jump of the sign ([`Crossing::is_jump`](crate::edge::Crossing::is_jump)): the surface is
+    /// elsewhere.
+    pub jumps: VertexSet,
     cases: Vec<CellCase>,
     /// By leaf, whether any of its cells is crowded ([`CornerSigns::crowded`](super::numbering::CornerSigns::crowded)).
     crowded: Vec<bool>,
@@ -83,8 +87,9 @@ impl<'a> Cells<'a> {
     ) -> Result<(Cells<'a>, Placements), Cancelled> {
         let bend = surface.map_or(Bend::UNKNOWN, Bend::of);
         let features = Features::new(Vec::new(), 0, bend);
-        let (cases, crowded) = (Vec::new(), Vec::new());
-        let mut cells = Cells { signs, crossings, grid, slab, numbers, surface, features, cases, crowded };
+        let (jumps, cases, crowded) = (VertexSet::default(), Vec::new(), Vec::new());
+        let mut cells =
+            Cells { signs, crossings, grid, slab, numbers, surface, features, jumps, cases, crowded };
         let mut cases: Vec<CellCase> = bytemuck::zeroed_vec(numbers.len());
         // Face and edge vertices come after them, and the whole need not move for those few. Room that is not used is not
         // touched.
@@ -110,16 +115,19 @@ impl<'a> Cells<'a> {
         let mut statistics = ContourStatistics::default();
         let mut wishes = vec![Vec::new(); signs.len()];
         let mut features = Vec::with_capacity(placed.iter().map(|own| own.features.len()).sum());
+        let mut jumps = Vec::new();
         for (own, &leaf) in placed.into_iter().zip(&leaves) {
             cells.crowded[leaf.0 as usize] = own.is_crowded;
             wishes[leaf.0 as usize] = own.wishes;
             features.extend(own.features);
+            jumps.extend(own.jumps);
             if cells.owns(leaf) {
                 statistics.cells += numbers.range(leaf).len() as u64;
                 statistics.several_sheets += u64::from(own.several_sheets);
                 statistics.clamped += u64::from(own.clamped);
             }
         }
+        cells.jumps = VertexSet::new(&jumps, vertices.len());
         cells.features = Features::new(features, vertices.len(), bend);
         Ok((cells, Placements { vertices, wishes, statistics }))
     }

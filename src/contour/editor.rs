@@ -9,6 +9,7 @@ use super::grid::Grid;
 use super::patch::{Patch, PatchEdge, PatchTriangle};
 use super::qef::{cross, dot};
 use super::surface::Surface;
+use super::vertex_set::VertexSet;
 
 type Point = [f64; 3];
 
@@ -33,10 +34,6 @@ const SHARES: [f64; 4] = [1.0, 0.75, 0.5, 0.25];
 /// A part of the way must bring the vertex of a split nearer by this factor.
 const GOOD_PART: f64 = 0.8;
 
-/// Nothing is nearer to the surface by a split when it is farther away than this, in voxels: each vertex of the mesh was made
-/// in a cell that the surface passes through, within sqrt(3) voxels, unless the sign of the distance jumps there.
-const JUMP: f64 = 2.0;
-
 /// The most splits that come of one vertex. Where the surface jumps, splits do not bring it nearer, and would go on
 /// without end.
 const MOST_SPLITS: u64 = 12;
@@ -51,6 +48,8 @@ pub struct Editor<'a> {
     pub grid: &'a Grid,
     /// The vertices on creases and corners.
     pub features: &'a Features,
+    /// The vertices where the sign jumps.
+    pub jumps: &'a VertexSet,
     /// Triangles, edges and vertices that are farther from the surface, in voxels, are split and moved.
     pub tolerance: f64,
     /// Whether what the features nearby say is enough where they say that the surface is near.
@@ -74,9 +73,21 @@ impl<'a> Editor<'a> {
         tolerance: f64,
         trusting: bool,
     ) -> Editor<'a> {
-        let (grid, features) = (&cells.grid, &cells.features);
+        let (grid, features, jumps) = (&cells.grid, &cells.features, &cells.jumps);
         let (piece, answers, splits_left, given_up) = (0, Answers::new(), u64::MAX, 0);
-        Editor { patch, surface, grid, features, tolerance, trusting, piece, answers, splits_left, given_up }
+        Editor {
+            patch,
+            surface,
+            grid,
+            features,
+            jumps,
+            tolerance,
+            trusting,
+            piece,
+            answers,
+            splits_left,
+            given_up,
+        }
     }
 }
 
@@ -127,11 +138,12 @@ impl Editor<'_> {
             next += 1;
             let mut open = self.patch.star(vertex);
             while let Some(n) = open.pop() {
+                let Some(worst) = self.worst(n) else { continue };
                 if split == MOST_SPLITS || self.splits_left == 0 {
-                    self.given_up += u64::from(self.worst(n).is_some());
+                    self.given_up += 1;
                     return split;
                 }
-                let Some(new) = self.improve(n) else { continue };
+                let Some(new) = self.improve(n, worst) else { continue };
                 split += 1;
                 self.splits_left -= 1;
                 vertices.push(new);
@@ -147,9 +159,23 @@ impl Editor<'_> {
         self.patch.star(vertex).into_iter().any(|n| self.worst(n).is_some())
     }
 
-    /// Where a triangle is farthest from the surface, if that is beyond the tolerance: the number of a side or 3 for
-    /// its centre, and the place.
+    /// Where a triangle is farthest from the surface, if that is beyond the tolerance and not where the sign jumps: the number
+    /// of a side or 3 for its centre, and the place.
     pub fn worst(&mut self, n: usize) -> Option<(usize, Point)> {
+        if self.jumps.contains_any(self.patch.triangle_at(n).vertices) {
+            return None;
+        }
+        let (worst, place, error) = self.farthest(n)?;
+        (error > self.tolerance).then_some((worst, place))
+    }
+
+    /// Whether a triangle is farther from the surface than the tolerance.
+    pub fn is_beyond(&mut self, n: usize) -> bool {
+        self.farthest(n).is_some_and(|(_, _, error)| error > self.tolerance)
+    }
+
+    /// Where a triangle is farthest from the surface, and how far.
+    fn farthest(&mut self, n: usize) -> Option<(usize, Point, f64)> {
         let t = *self.patch.triangle_at(n);
         let [a, b, c] = t.corners;
         let centre = std::array::from_fn(|i| (a[i] + b[i] + c[i]) / 3.0);
@@ -157,13 +183,12 @@ impl Editor<'_> {
         let sides = self.sides(&t);
         let errors = places.map(|p| self.error(p, &sides));
         let worst = (0..4).max_by(|&i, &j| errors[i].total_cmp(&errors[j]))?;
-        (errors[worst] > self.tolerance && errors[worst] < JUMP).then_some((worst, places[worst]))
+        Some((worst, places[worst], errors[worst]))
     }
 
-    /// Splits a triangle, or an edge of it, where it is farthest from the surface, or merges the ends of an edge if
-    /// that is not possible. Returns the vertex around which the triangles are others now.
-    pub fn improve(&mut self, n: usize) -> Option<u32> {
-        let (worst, from) = self.worst(n)?;
+    /// Splits a triangle, or an edge of it, where it is farthest from the surface as [`worst`](Self::worst) says, or merges the
+    /// ends of an edge if that is not possible. Returns the vertex around which the triangles are others now.
+    pub fn improve(&mut self, n: usize, (worst, from): (usize, Point)) -> Option<u32> {
         self.split(n, worst, from).or_else(|| self.mend(n))
     }
 

@@ -18,6 +18,8 @@ pub struct LeafVertices {
     pub wishes: Vec<Wish>,
     /// Vertices on creases and corners.
     pub features: Vec<FeatureVertex>,
+    /// Vertices of cells with a jump of the sign.
+    pub jumps: Vec<u32>,
     /// Cells with more than one sheet. Small numbers: most leaves have no cells, and there is this for all.
     pub several_sheets: u16,
     /// See [`ContourStatistics::clamped`](super::ContourStatistics::clamped).
@@ -138,8 +140,11 @@ impl Placer<'_> {
         let number = first + sheet;
         self.vertices[number] = placed.position;
         self.found.clamped += u16::from(placed.placement == Placement::Clamped);
-        let Some(feature) = placed.feature else { return };
         let vertex = (numbers.vertex_range(self.leaf).start + number) as u32;
+        if placed.is_jump {
+            self.found.jumps.push(vertex);
+        }
+        let Some(feature) = placed.feature else { return };
         self.found.features.push(FeatureVertex { vertex, feature });
         if placed.placement == Placement::Clamped {
             self.found.wishes.push(Wish { vertex, place: Some(feature.point) });

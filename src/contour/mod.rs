@@ -25,7 +25,7 @@
 //! | `numbering` | active cells and their vertices, numbered by ranks in bit masks |
 //! | `cells`, `leaf_crossings`, `leaf_vertices` | all cells, leaf by leaf, with the crossings of their edges (`beside`: what of them is a neighbour's) |
 //! | `smooth` | the vertices of cells that see one smooth side, several at a time |
-//! | `qef`, `region`, `vertex` | the vertex of any other sheet within its cell and its walls |
+//! | `qef`, `region`, `vertex`, `vertex_set` | the vertex of any other sheet within its cell and its walls |
 //! | `surface`, `planes`, `feature`, `features` | the surface's creases and corners: what a cell sees of them, where they are, remembered |
 //! | `face_vertex` | vertices on faces where a connection would get in another sheet's way |
 //! | `leaf_cells`, `edge_polygon` | the cells and the polygon around each crossed edge |
@@ -75,6 +75,7 @@ mod smooth;
 mod statistics;
 mod surface;
 mod vertex;
+mod vertex_set;
 
 pub use cut_times::{CutTimes, cut_times};
 pub use grid::Precision;

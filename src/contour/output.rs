@@ -171,7 +171,8 @@ fn in_leaf(
                 let far = is_far(&triangles, position, &fit, &mut ask);
                 output.far.extend(corners.iter().filter_map(|corner| {
                     let is_feature = cells.features.get(corner.vertex).is_some();
-                    (far && is_feature || is_far_at(corner.position, &fit, &mut ask)).then_some(corner.vertex)
+                    let is_far = far && is_feature || is_far_at(corner.position, &fit, &mut ask);
+                    (is_far && !cells.jumps.contains(corner.vertex)).then_some(corner.vertex)
                 }));
             }
             if cut == Cut::Split {

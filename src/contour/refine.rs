@@ -94,13 +94,14 @@ impl Editor<'_> {
         let mut refined = Refined::default();
         let own = self.patch.numbered(numbers);
         if only_count {
-            refined.beyond = own.iter().filter(|&&n| self.worst(n).is_some()).count() as u64;
+            refined.beyond = own.iter().filter(|&&n| self.is_beyond(n)).count() as u64;
             return refined;
         }
         let mut corners: Vec<u32> = own.iter().flat_map(|&n| self.patch.triangle_at(n).vertices).collect();
         corners.sort_unstable();
         corners.dedup();
-        for vertex in corners {
+        let jumps = self.jumps;
+        for vertex in corners.into_iter().filter(|&vertex| !jumps.contains(vertex)) {
             if let Some(place) = self.place_on_surface(vertex) {
                 refined.moved += u64::from(self.patch.try_move(vertex, place));
             }
@@ -109,7 +110,8 @@ impl Editor<'_> {
             if self.patch.is_gone(n) {
                 continue;
             }
-            if let Some(new) = self.improve(n) {
+            let Some(worst) = self.worst(n) else { continue };
+            if let Some(new) = self.improve(n, worst) {
                 refined.split += 1;
                 self.flip_around(new);
             }

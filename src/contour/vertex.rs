@@ -65,6 +65,8 @@ pub struct Placed {
     pub placement: Placement,
     /// The feature that it stands for, if there is one: the point, rounded, and the sides that meet there.
     pub feature: Option<Feature>,
+    /// Whether the sign jumps at one of its crossings.
+    pub is_jump: bool,
 }
 
 /// The position of the vertex of sheet number `sheet` of a cell. `crossing` gives the sample of each of the
@@ -121,7 +123,7 @@ pub fn place<'a>(
     }
     let (position, placement) = in_cell(grid, cell, case, sheet, crossing, &minimiser);
     let feature = found.map(|f| Feature { point: grid.round_ideal(cell, f.point), ..f });
-    Placed { position, placement, feature }
+    Placed { position, placement, feature, is_jump }
 }
 
 /// The position nearest to the minimiser that a cell and its walls allow, rounded.
