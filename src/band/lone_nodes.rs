@@ -15,7 +15,7 @@
 
 use super::signs::{LeafId, SignField};
 use crate::distance::SignedDistance;
-use crate::lattice::{Ijk, LeafMask, Lattice, Z_FIRST, Z_LAST, bits};
+use crate::lattice::{Ijk, Lattice, LeafMask, Z_FIRST, Z_LAST, bits};
 use crate::run::SHARE;
 use crate::slab::Slab;
 use glam::DVec3;

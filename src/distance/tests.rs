@@ -159,7 +159,10 @@ fn the_depth_of_plates_and_needles_is_bounded_in_a_bounded_search() {
         let thinnest = half[1].min(half[2]);
         let depth = depth_of(&cuboid(half, DVec3::ZERO), 1e-3);
         assert!(depth.at_least <= thinnest * (1.0 + 1e-12), "{half:?}: {depth:?}");
-        assert!((thinnest * (1.0 - 1e-12)..=1.01 * thinnest + 1e-3).contains(&depth.at_most), "{half:?}: {depth:?}");
+        assert!(
+            (thinnest * (1.0 - 1e-12)..=1.01 * thinnest + 1e-3).contains(&depth.at_most),
+            "{half:?}: {depth:?}"
+        );
     }
     // Tilted, its bounding box is not thin.
     let mut tilted = cuboid([127.5, 138.5, 1.5], DVec3::ZERO);

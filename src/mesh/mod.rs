@@ -6,7 +6,9 @@ pub mod shapes;
 mod topology;
 mod equal;
 mod tri_mesh;
+mod usable;
 
 pub use clean::{CleanReport, clean, weld};
 pub use topology::{Defects, Topology};
 pub use tri_mesh::TriMesh;
+pub use usable::{LENGTHS, MeshError};

@@ -130,6 +130,7 @@ impl Prepared<'_> {
         run: &RunSettings,
         work: impl FnOnce(&Prepared<'_>) -> Result<T, Error>,
     ) -> Result<T, Error> {
+        unsuitable::check_mesh(mesh)?;
         let topology = run.install(|| Topology::new(mesh));
         unsuitable::check_input(mesh, &topology, settings.sign)?;
         let band_settings = settings.resolve(mesh)?;

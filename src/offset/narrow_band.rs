@@ -1,7 +1,9 @@
 //! The band as the edges and the contour need it, in plain arrays; and into OpenVDB, where it is to be kept.
 
 use super::stored_band::StoredBand;
-use crate::band::{self, BOXES_PER_BATCH, BandSettings, InsideBlocks, LeafBatch, LeafMask, LoneNodes, SignField};
+use crate::band::{
+    self, BOXES_PER_BATCH, BandSettings, InsideBlocks, LeafBatch, LeafMask, LoneNodes, SignField,
+};
 use crate::candidates::{BlockLists, CandidateLists};
 use crate::distance::SignedDistance;
 use crate::edge::{NearTriangles, NodeTriangles, PartTriangles};

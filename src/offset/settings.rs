@@ -4,7 +4,7 @@ use crate::band::BandSettings;
 use crate::contour::{ContourSettings, Precision};
 use crate::geom::aabb::Aabb;
 use crate::lattice::Lattice;
-use crate::mesh::TriMesh;
+use crate::mesh::{LENGTHS, TriMesh};
 use crate::slab::Slab;
 use glam::DVec3;
 
@@ -108,6 +108,14 @@ pub enum SettingsError {
     /// The half-width is out of range.
     #[error("the half-width must be 1 to 1000 voxels, not {0}")]
     HalfWidth(f64),
+    /// A length is too large or too small to work with ([`LENGTHS`]).
+    #[error("the {what} is {length:e}, and lengths from {:e} to {:e} can be worked with; choose another one", LENGTHS.start(), LENGTHS.end())]
+    Length {
+        /// Which length.
+        what: &'static str,
+        /// The length.
+        length: f64,
+    },
     /// Lattice indices would leave the range of 32-bit integers.
     #[error(
         "with voxel size {voxel} the model and its offset span more than 2^30 lattice indices from the \
@@ -182,6 +190,12 @@ impl OffsetSettings {
         let bounds = Aabb::around(mesh.vertices.iter().map(|&v| DVec3::from(v)));
         let (voxel, r) = (band.lattice.voxel, band.r);
         let farthest = bounds.lo.abs().max(bounds.hi.abs()).max_element() + r.abs() + self.half_width * voxel;
+        if !LENGTHS.contains(&voxel) {
+            return Err(SettingsError::Length { what: "voxel size", length: voxel });
+        }
+        if farthest > *LENGTHS.end() {
+            return Err(SettingsError::Length { what: "distance", length: r.abs() });
+        }
         if farthest / voxel > LARGEST_INDEX {
             return Err(SettingsError::Range { voxel, smallest: farthest / LARGEST_INDEX });
         }

@@ -5,7 +5,7 @@ use crate::band::BandSettings;
 use crate::distance::{SignedDistance, largest_depth};
 use crate::edge::TooManyEdges;
 use crate::geom::aabb::Aabb;
-use crate::mesh::{Topology, TriMesh, measure};
+use crate::mesh::{MeshError, Topology, TriMesh, measure};
 use crate::run::{Cancelled, RunSettings};
 use glam::DVec3;
 
@@ -15,6 +15,9 @@ pub enum InputError {
     /// There is no triangle.
     #[error("the mesh has no triangles")]
     NoTriangles,
+    /// A vertex or a triangle cannot be worked with.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
     /// Edges with a single triangle.
     #[error(
         "the mesh is not closed: {count} boundary edges, the first from ({:.6}, {:.6}, {:.6}) to ({:.6}, \
@@ -42,10 +45,16 @@ pub enum InputError {
     },
 }
 
-pub(super) fn check_input(mesh: &TriMesh, topology: &Topology, sign: SignMode) -> Result<(), InputError> {
+/// Checks what must be right before the topology is looked at.
+pub(super) fn check_mesh(mesh: &TriMesh) -> Result<(), InputError> {
     if mesh.triangles.is_empty() {
         return Err(InputError::NoTriangles);
     }
+    Ok(mesh.check()?)
+}
+
+/// Checks that the mesh is the boundary of a solid, where the sign needs that.
+pub(super) fn check_input(mesh: &TriMesh, topology: &Topology, sign: SignMode) -> Result<(), InputError> {
     if sign == SignMode::Pseudonormal {
         return Ok(());
     }
@@ -186,8 +195,8 @@ pub fn available_memory() -> Option<u64> {
 pub enum EmptyResult {
     /// The model is nowhere as deep as the shrink.
     #[error(
-        "nothing is left at distance {distance}: the model is at most {} deep, so any distance below -{} \
-         leaves nothing", figure(*.depth), figure(*.depth)
+        "nothing is left at distance {}: the model is at most {} deep, so any distance below -{} \
+         leaves nothing", figure(*.distance), figure(*.depth), figure(*.depth)
     )]
     TooDeep {
         /// The offset distance, negative.
@@ -197,8 +206,9 @@ pub enum EmptyResult {
     },
     /// No node of the lattice is inside the offset solid, and it may be there all the same.
     #[error(
-        "the offset solid at distance {distance} is empty or too thin for voxel size {voxel}: no lattice node \
-         lies inside it (the model is at most {} deep); choose a smaller voxel size", figure(*.depth)
+        "the offset solid at distance {} is empty or too thin for voxel size {}: no lattice node \
+         lies inside it (the model is at most {} deep); choose a smaller voxel size",
+        figure(*.distance), figure(*.voxel), figure(*.depth)
     )]
     TooThin {
         /// The offset distance.
@@ -232,6 +242,16 @@ impl EmptyResult {
 
 /// A length with six significant digits.
 fn figure(x: f64) -> String {
+    if x == 0.0 {
+        return "0".to_owned();
+    }
     let digits = 5 - x.abs().max(f64::MIN_POSITIVE).log10().floor() as i32;
-    if (0..12).contains(&digits) { format!("{x:.0$}", digits as usize) } else { format!("{x:.5e}") }
+    match digits {
+        1..12 => {
+            let text = format!("{x:.0$}", digits as usize);
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        }
+        0 => format!("{x:.0}"),
+        _ => format!("{x:.5e}"),
+    }
 }

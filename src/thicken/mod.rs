@@ -74,6 +74,7 @@ pub fn thicken(
     if patch.triangles.is_empty() {
         return Err(ThickenError::from(PatchError::NoTriangles).into());
     }
+    patch.check().map_err(PatchError::from).map_err(ThickenError::from)?;
     let resolved = settings.resolve(patch)?;
     let started = Instant::now();
     let patch = as_written(patch, settings);

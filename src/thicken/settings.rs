@@ -3,7 +3,7 @@
 use super::ThickenError;
 use crate::contour::Precision;
 use crate::geom::aabb::Aabb;
-use crate::mesh::TriMesh;
+use crate::mesh::{LENGTHS, TriMesh};
 use crate::offset::{Length, VoxelSize};
 use glam::DVec3;
 
@@ -130,6 +130,12 @@ impl ThickenSettings {
             return Err(ThickenError::TooCoarse { voxel, thickness: thinnest });
         }
         let farthest = bounds.lo.abs().max(bounds.hi.abs()).max_element() + 2.0 * thickness;
+        if !LENGTHS.contains(&voxel) {
+            return Err(ThickenError::Length { what: "voxel size", length: voxel });
+        }
+        if farthest > *LENGTHS.end() {
+            return Err(ThickenError::Length { what: "thickness", length: thickness });
+        }
         if farthest / voxel > LARGEST_INDEX {
             return Err(ThickenError::Range { voxel, smallest: farthest / LARGEST_INDEX });
         }

@@ -1,5 +1,6 @@
 //! Why a patch cannot be thickened.
 
+use crate::mesh::{LENGTHS, MeshError};
 use std::fmt;
 
 /// Why [`thicken`](super::thicken) refused its settings or gave up.
@@ -33,6 +34,14 @@ pub enum ThickenError {
         voxel: f64,
         /// The thickness.
         thickness: f64,
+    },
+    /// A length is too large or too small to work with ([`LENGTHS`]).
+    #[error("the {what} is {length:e}, and lengths from {:e} to {:e} can be worked with; choose another one", LENGTHS.start(), LENGTHS.end())]
+    Length {
+        /// Which length.
+        what: &'static str,
+        /// The length.
+        length: f64,
     },
     /// Lattice indices would leave the range of 32-bit integers.
     #[error(
@@ -70,6 +79,9 @@ pub enum PatchError {
     /// There is no triangle.
     #[error("the mesh has no triangles")]
     NoTriangles,
+    /// A vertex or a triangle cannot be worked with.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
     /// An edge has more than two triangles.
     #[error("the patch is not 2-manifold: the edge from {} to {} has more than two triangles", Point(.ends[0]), Point(.ends[1]))]
     NonManifoldEdge {

@@ -1,5 +1,6 @@
 //! What to judge by.
 
+use crate::mesh::MeshError;
 use crate::offset::Length;
 
 /// The seed when none is given; any would do.
@@ -66,21 +67,13 @@ pub enum VerifyError {
     /// A mesh has no triangles with different corners.
     #[error("{0} has no triangles")]
     NoTriangles(Which),
-    /// A coordinate is infinite or not a number.
-    #[error("vertex {vertex} of {which} is not finite")]
-    NotFinite {
+    /// A vertex or a triangle cannot be worked with.
+    #[error("{which}: {source}")]
+    Mesh {
         /// The mesh.
         which: Which,
-        /// The vertex number.
-        vertex: usize,
-    },
-    /// A triangle names a vertex that is not there.
-    #[error("triangle {triangle} of {which} names a vertex that does not exist")]
-    NoVertex {
-        /// The mesh.
-        which: Which,
-        /// The triangle number.
-        triangle: usize,
+        /// What is wrong with it.
+        source: MeshError,
     },
     /// A setting is out of range.
     #[error("the {name} must be {range}, not {value}")]

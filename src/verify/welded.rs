@@ -22,7 +22,7 @@ impl Welded {
     /// Welds a copy of `mesh`. Runs on the current rayon pool.
     ///
     /// # Errors
-    /// [`VerifyError::NotFinite`], [`VerifyError::NoVertex`].
+    /// [`VerifyError::Mesh`].
     pub fn new(mesh: &TriMesh, which: Which) -> Result<Self, VerifyError> {
         check(mesh, which)?;
         let (mut mesh, report) = weld(mesh.clone());
@@ -53,15 +53,7 @@ impl Welded {
     }
 }
 
-/// Checks that a mesh can be looked at: finite coordinates, vertices that exist.
+/// Checks that a mesh can be looked at.
 pub(super) fn check(mesh: &TriMesh, which: Which) -> Result<(), VerifyError> {
-    let finite = |p: &[f64; 3]| p.iter().all(|x| x.is_finite());
-    if let Some(vertex) = mesh.vertices.par_iter().position_first(|p| !finite(p)) {
-        return Err(VerifyError::NotFinite { which, vertex });
-    }
-    let exists = |t: &[u32; 3]| t.iter().all(|&v| (v as usize) < mesh.vertices.len());
-    if let Some(triangle) = mesh.triangles.par_iter().position_first(|t| !exists(t)) {
-        return Err(VerifyError::NoVertex { which, triangle });
-    }
-    Ok(())
+    mesh.check().map_err(|source| VerifyError::Mesh { which, source })
 }
