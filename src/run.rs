@@ -3,6 +3,10 @@
 //! [`RunSettings`] is passed last to everything that takes time. Nothing in it changes a result:
 //! the same input gives the same bytes for every number of threads.
 
+mod bytes;
+
+pub use bytes::Bytes;
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 

@@ -113,7 +113,9 @@ fn what_does_not_fit_is_streamed_by_itself() {
     bench.run(&["-o", &output, "--stream"]).fails_with(2);
     // No slab is thin enough.
     let output = bench.text("thin.ply");
-    bench.run(&["-o", &output, "--max-memory", "8M", "--stream"]).fails_with(5);
+    let outcome = bench.run(&["-o", &output, "--max-memory", "8M", "--stream"]);
+    outcome.fails_with(5);
+    assert!(outcome.stderr.contains("and 8 MB are allowed"), "{}", outcome.stderr);
     assert_eq!(names(bench.dir.path()), before);
 }
 

@@ -108,16 +108,6 @@ pub(super) fn short(x: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
 }
 
-/// A number of bytes as `12.3 MB`, with powers of 1024 like those that [`bytes`] reads.
-pub(super) fn memory(n: u64) -> String {
-    match n {
-        0..1024 => format!("{n} bytes"),
-        1024..1_048_576 => format!("{:.1} KB", n as f64 / 1024.0),
-        1_048_576..1_073_741_824 => format!("{:.1} MB", n as f64 / 1_048_576.0),
-        _ => format!("{:.2} GB", n as f64 / 1_073_741_824.0),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -167,6 +157,5 @@ mod tests {
     fn numbers_read_well() {
         assert_eq!([grouped(7), grouped(1000), grouped(1234567)], ["7", "1,000", "1,234,567"]);
         assert_eq!([short(0.1), short(-1234.5678), short(1e-7)], ["0.1", "-1234.57", "1.00000e-7"]);
-        assert_eq!(memory(3 << 20), "3.0 MB");
     }
 }

@@ -7,14 +7,14 @@ use super::files::{
     save_vdb, vdb_options,
 };
 use super::making::{check_pieces, identity, make};
-use super::numbers::{counted, grouped, memory, short};
+use super::numbers::{counted, grouped, short};
 use super::outputs;
 use super::resources::peak_rss;
 use super::session::{Session, Verbosity};
 use super::statistics::{MeshFacts, Phases, RunFile};
 use exocarp::mesh::{CleanReport, Topology};
 use exocarp::offset::{EngineTimes, OffsetResult, OffsetSettings, OffsetStatistics, Precision, VoxelSize};
-use exocarp::run::Phase;
+use exocarp::run::{Bytes, Phase};
 use exocarp::vdb::VdbOptions;
 use serde::Serialize;
 
@@ -223,5 +223,5 @@ fn summary(result: &OffsetResult, phases: &Phases<EngineTimes>) -> String {
     text += &count("  with several sheets", s.contour.several_sheets);
     text += &count("  clamped vertices", s.contour.clamped);
     text += &count("active voxels", s.vdb.active_voxels);
-    text + &format!("  band {}, peak {}", memory(s.vdb.memory), memory(peak_rss()))
+    text + &format!("  band {}, peak {}", Bytes(s.vdb.memory), Bytes(peak_rss()))
 }

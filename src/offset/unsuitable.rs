@@ -8,6 +8,7 @@ use crate::geom::aabb::Aabb;
 use crate::mesh::{MeshError, Topology, TriMesh, measure};
 use crate::run::{Cancelled, RunSettings};
 use glam::DVec3;
+use crate::run::Bytes;
 
 /// The input is not the boundary of a solid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -74,7 +75,7 @@ pub(super) fn check_input(mesh: &TriMesh, topology: &Topology, sign: SignMode) -
 #[error(
     "voxel size {voxel} needs about {} of memory, and {} are allowed; the smallest voxel size that fits is \
      about {smallest_voxel:.3e} (or raise --max-memory)",
-    bytes(*.needed), bytes(*.allowed)
+    Bytes(*.needed), Bytes(*.allowed)
 )]
 pub struct MemoryError {
     /// The voxel size asked for, in model units.
@@ -117,14 +118,6 @@ pub(super) fn leaves_within(mesh: &TriMesh, bytes: u64) -> u64 {
 /// What the input takes, in bytes.
 fn input_bytes(mesh: &TriMesh) -> u64 {
     (mesh.triangles.len() as f64 * BYTES_PER_TRIANGLE) as u64
-}
-
-fn bytes(n: u64) -> String {
-    match n {
-        0..10_000_000 => format!("{:.1} MB", n as f64 / 1e6),
-        10_000_000..1_000_000_000 => format!("{:.0} MB", n as f64 / 1e6),
-        _ => format!("{:.1} GB", n as f64 / 1e9),
-    }
 }
 
 /// Bytes per h^2 of offset surface: band, crossings, cells and mesh. Measured as peak memory over area / h^2 on the same models, at
