@@ -9,10 +9,9 @@ use exocarp::error::Error;
 use exocarp::io::{Format, MeshStream, SaveError, Tile, save_tile};
 use exocarp::mesh::TriMesh;
 use exocarp::offset::{
-    Cut, OffsetResult, OffsetSettings, PieceSink, available_memory, check_memory, offset, offset_band,
+    Cut, OffsetResult, OffsetSettings, PieceSink, available_memory, check_memory, job, offset, offset_band,
     offset_in_slabs,
 };
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -128,16 +127,7 @@ pub(super) fn check_pieces(arguments: &OffsetArguments) -> Result<(), Failure> {
 
 /// What a tile's files say of it: its number, and what identifies the input and what is made of it.
 pub(super) fn identity(tile: TileNumber, mesh: &TriMesh, settings: &OffsetSettings) -> Tile {
-    let mut hasher = DefaultHasher::new();
-    env!("CARGO_PKG_VERSION").hash(&mut hasher);
-    // Memory changes nothing of the result.
-    format!("{:?}", OffsetSettings { max_memory: None, keep_band: false, ..settings.clone() })
-        .hash(&mut hasher);
-    for x in mesh.vertices.as_flattened() {
-        x.to_bits().hash(&mut hasher);
-    }
-    mesh.triangles.hash(&mut hasher);
-    Tile { number: tile.number, of: tile.of, job: hasher.finish() }
+    Tile { number: tile.number, of: tile.of, job: job(mesh, settings) }
 }
 
 /// The user knows nothing of the temporary path.

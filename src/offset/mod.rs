@@ -11,6 +11,7 @@
 
 pub(crate) mod narrow_band;
 mod in_slabs;
+mod job;
 mod on_slab;
 mod resolving;
 mod slabs;
@@ -24,6 +25,7 @@ mod unsuitable;
 
 pub use crate::contour::Precision;
 pub use in_slabs::{Cut, PieceSink, offset_in_slabs};
+pub use job::job;
 pub use settings::{Length, OffsetSettings, SettingsError, SignMode, Tolerance, VoxelSize};
 pub use statistics::{EngineTimes, OffsetStatistics, VdbStatistics};
 pub use unsuitable::{EmptyResult, InputError, MemoryError, available_memory};
