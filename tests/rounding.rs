@@ -69,7 +69,7 @@ fn files_are_sound_at_every_size_of_the_model() {
             for fraction in [0.02, 0.0, -0.01] {
                 let what = format!("{name} x {scale} {fraction}");
                 let result = offset(&model, &settings(fraction, Precision::F32), &run()).expect(&what);
-                for extension in ["ply", "stl"] {
+                for extension in ["ply", "stl", "obj", "off"] {
                     let again = reread(&result.mesh, extension, Coordinates::F32);
                     assert_eq!(again.triangles.len(), result.mesh.triangles.len(), "{what}");
                     assert_sound(&again, result.mesh.vertices.len(), &format!("{what} {extension}"));

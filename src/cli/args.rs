@@ -177,7 +177,7 @@ pub(super) struct ThickenArguments {
 /// How the mesh is written, and what is written beside it.
 #[derive(Args, Debug)]
 pub(super) struct OutputArguments {
-    /// Write PLY with 64-bit coordinates
+    /// Write 64-bit coordinates instead of 32-bit ones (PLY, OBJ, OFF)
     #[arg(long)]
     pub f64: bool,
     /// Write the narrow band around the result as an OpenVDB level set, too
@@ -360,7 +360,7 @@ pub(super) struct ModelArguments {
     // More would need gigabytes for a test model.
     #[arg(value_parser = clap::value_parser!(u32).range(2..=512))]
     pub detail: u32,
-    /// Write PLY with 64-bit coordinates
+    /// Write 64-bit coordinates instead of 32-bit ones (PLY, OBJ, OFF)
     #[arg(long)]
     pub f64: bool,
 }

@@ -17,12 +17,8 @@ use std::path::Path;
 pub(super) const STORED_HALF_WIDTH: f64 = 3.0;
 
 /// The coordinates that the output will have: the promise of no intersections holds for those.
-pub(super) fn precision(output: &Path, f64: bool) -> Result<Precision, Failure> {
-    Ok(match format(output)? {
-        Format::Obj | Format::Off => Precision::F64,
-        Format::Ply if f64 => Precision::F64,
-        Format::Ply | Format::Stl => Precision::F32,
-    })
+pub(super) fn precision(f64: bool) -> Precision {
+    if f64 { Precision::F64 } else { Precision::F32 }
 }
 
 pub(super) fn format(output: &Path) -> Result<Format, Failure> {
@@ -39,7 +35,7 @@ pub(super) fn check_mesh_output(output: &Path, f64: bool) -> Result<(), Failure>
     if format(output)? == Format::Stl && f64 {
         let shown = output.display();
         return Err(Failure::usage(format!(
-            "{shown}: STL has no 64-bit coordinates; write .ply, or omit --f64"
+            "{shown}: STL has no 64-bit coordinates; write .ply, .obj or .off, or omit --f64"
         )));
     }
     Ok(())

@@ -13,7 +13,7 @@ use super::resources::peak_rss;
 use super::session::{Session, Verbosity};
 use super::statistics::{MeshFacts, Phases, RunFile};
 use exocarp::mesh::{CleanReport, Topology};
-use exocarp::offset::{EngineTimes, OffsetResult, OffsetSettings, OffsetStatistics, Precision, VoxelSize};
+use exocarp::offset::{EngineTimes, OffsetResult, OffsetSettings, OffsetStatistics, VoxelSize};
 use exocarp::run::{Bytes, Phase};
 use exocarp::vdb::VdbOptions;
 use serde::Serialize;
@@ -74,10 +74,7 @@ fn settings(arguments: &OffsetArguments, session: &Session) -> Result<OffsetSett
         sign: arguments.sign.mode(),
         half_width: if arguments.more.vdb.is_some() { STORED_HALF_WIDTH } else { 1.0 },
         keep_band: arguments.more.vdb.is_some(),
-        precision: arguments
-            .output
-            .as_ref()
-            .map_or(Ok(Precision::F32), |o| precision(o, arguments.more.f64))?,
+        precision: precision(arguments.more.f64),
         tolerance: arguments.tolerance,
         resolve: arguments.resolve,
         max_memory: session.max_memory,

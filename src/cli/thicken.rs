@@ -100,7 +100,7 @@ fn settings(arguments: &ThickenArguments, session: &Session) -> Result<ThickenSe
         halvings: arguments.resolve,
         rounds: arguments.rounds,
         section_normals: arguments.section_normals.normals(),
-        precision: precision(&arguments.output, arguments.more.f64)?,
+        precision: precision(arguments.more.f64),
         max_memory: session.max_memory,
         ..defaults
     };

@@ -7,10 +7,10 @@ use crate::band::{Ijk, Lattice};
 /// The coordinates that the contour is decided on, and must be written with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Precision {
-    /// Every coordinate is a 32-bit float: right for binary STL and PLY.
+    /// Every coordinate is a 32-bit float: what files hold, or most readers of text.
     #[default]
     F32,
-    /// 64-bit floats: right for text formats and `--f64` PLY.
+    /// 64-bit floats, for files that are written and read with those.
     F64,
 }
 

@@ -20,8 +20,9 @@
 //!   a [`LoadError`] that names file, place, cause and remedy (fuzzed in `tests.rs`).
 //! - [`save`] replaces an existing file whole and only when the new one is complete: the content goes to a
 //!   temporary file beside it, which is renamed. A failure leaves the old file and no other.
-//! - A mesh that was saved loads again with the same triangles and the same coordinates, rounded to f32
-//!   where the format has f32 (STL; PLY by default).
+//! - A mesh that was saved loads again with the same triangles and the same coordinates: those of the mesh
+//!   rounded to f32, or as they are with [`Coordinates::F64`], which STL has not. So do text formats: readers of
+//!   32 and of 64 bits get the same numbers.
 
 pub(crate) mod atomic;
 mod error;
@@ -99,21 +100,31 @@ impl std::fmt::Display for Format {
     }
 }
 
-/// The number type of coordinates in a binary file.
+/// The number type of coordinates in a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Coordinates {
-    /// Single precision, which every program reads.
+    /// Single precision, which every program reads. In text, too: most readers round what they read to that.
     #[default]
     F32,
     /// Double precision.
     F64,
 }
 
+impl Coordinates {
+    /// The nearest coordinate of this type.
+    pub(crate) fn round(self, x: f64) -> f64 {
+        match self {
+            Coordinates::F32 => f64::from(x as f32),
+            Coordinates::F64 => x,
+        }
+    }
+}
+
 /// How a mesh is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SaveOptions {
-    /// The number type of coordinates in PLY. STL knows single precision only; OBJ and OFF are text and
-    /// always carry as many digits as the value needs.
+    /// The number type of coordinates. STL knows single precision only. In text (OBJ, OFF) there are as many digits
+    /// as a reader of 64 bits needs to get exactly that number.
     pub coordinates: Coordinates,
 }
 
@@ -170,10 +181,10 @@ pub fn save(mesh: &TriMesh, path: &Path, options: &SaveOptions) -> Result<(), Sa
     let format = Format::of(path).map_err(|e| at(SaveProblem::Extension(e)))?;
     check_writable(mesh, format, options).map_err(at)?;
     atomic::write_atomically(path, |writer| match format {
-        Format::Obj => obj::write(mesh, writer),
+        Format::Obj => obj::write(mesh, options.coordinates, writer),
         Format::Ply => ply::write(mesh, options.coordinates, writer),
         Format::Stl => stl::write(mesh, writer),
-        Format::Off => off::write(mesh, writer),
+        Format::Off => off::write(mesh, options.coordinates, writer),
     })
 }
 
@@ -216,11 +227,7 @@ fn read<R: Read + Seek>(mut source: R, format: Format) -> Result<TriMesh, Fault>
 
 /// Refuses, before the first byte is written, what would make a file that no one can read.
 fn check_writable(mesh: &TriMesh, format: Format, options: &SaveOptions) -> Result<(), SaveProblem> {
-    let single = match format {
-        Format::Stl => true,
-        Format::Ply => options.coordinates == Coordinates::F32,
-        Format::Obj | Format::Off => false,
-    };
+    let single = format == Format::Stl || options.coordinates == Coordinates::F32;
     let fits = |x: f64| if single { (x as f32).is_finite() } else { x.is_finite() };
     if let Some(vertex) = mesh.vertices.iter().position(|v| !v.iter().all(|&x| fits(x))) {
         return Err(SaveProblem::Coordinate { vertex, position: mesh.vertices[vertex] });

@@ -7,10 +7,10 @@
 
 use std::io::{BufRead, BufReader, Read, Seek, Write};
 
-use super::Format;
 use super::error::{Fault, Problem, quote};
 use super::polygon::PolygonMesh;
 use super::text::{Text, parse, write_number};
+use super::{Coordinates, Format};
 use crate::mesh::TriMesh;
 
 /// Reads a mesh.
@@ -225,12 +225,16 @@ impl<R: BufRead + Seek> Filter<R> {
 }
 
 /// Writes a mesh.
-pub(super) fn write(mesh: &TriMesh, writer: &mut impl Write) -> std::io::Result<()> {
+pub(super) fn write(
+    mesh: &TriMesh,
+    coordinates: Coordinates,
+    writer: &mut impl Write,
+) -> std::io::Result<()> {
     for v in &mesh.vertices {
         writer.write_all(b"v")?;
         for &x in v {
             writer.write_all(b" ")?;
-            write_number(x, writer)?;
+            write_number(coordinates.round(x), writer)?;
         }
         writer.write_all(b"\n")?;
     }

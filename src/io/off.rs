@@ -5,10 +5,10 @@
 
 use std::io::{BufReader, Read, Write};
 
-use super::Format;
 use super::error::{Fault, Problem, quote};
 use super::polygon::PolygonMesh;
 use super::text::{Text, write_number};
+use super::{Coordinates, Format};
 use crate::mesh::TriMesh;
 
 /// The shortest text of a vertex ("0 0 0" and a line end) and of a face ("0" and a line end): what a file
@@ -107,9 +107,14 @@ fn say_which(mut fault: Fault, name: &str, i: u64, count: u64) -> Fault {
 }
 
 /// Writes a mesh.
-pub(super) fn write(mesh: &TriMesh, writer: &mut impl Write) -> std::io::Result<()> {
+pub(super) fn write(
+    mesh: &TriMesh,
+    coordinates: Coordinates,
+    writer: &mut impl Write,
+) -> std::io::Result<()> {
     writeln!(writer, "OFF\n{} {} 0", mesh.vertices.len(), mesh.triangles.len())?;
-    for &[x, y, z] in &mesh.vertices {
+    for v in &mesh.vertices {
+        let [x, y, z] = v.map(|x| coordinates.round(x));
         write_number(x, writer)?;
         writer.write_all(b" ")?;
         write_number(y, writer)?;

@@ -175,15 +175,10 @@ pub(super) fn parse<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// Writes the shortest text that reads back as `x`: as f32 if `x` is exactly an f32, else as f64.
+/// Writes the shortest text that reads back as `x`. If `x` is exactly an f32, it reads back as that into an f32, too, but the
+/// shortest text of the f32 would not do: it is another number for those who read 64 bits.
 pub(super) fn write_number(x: f64, writer: &mut impl Write) -> std::io::Result<()> {
     // Outside of this range the plain notation is longer than the one with an exponent.
-    let plain = x == 0.0 || (1e-5..1e16).contains(&x.abs());
-    let single = x as f32;
-    match (f64::from(single) == x, plain) {
-        (true, true) => write!(writer, "{single}"),
-        (true, false) => write!(writer, "{single:e}"),
-        (false, true) => write!(writer, "{x}"),
-        (false, false) => write!(writer, "{x:e}"),
-    }
+    let is_plain = x == 0.0 || (1e-5..1e16).contains(&x.abs());
+    if is_plain { write!(writer, "{x}") } else { write!(writer, "{x:e}") }
 }

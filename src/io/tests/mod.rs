@@ -46,10 +46,10 @@ fn tetrahedron() -> TriMesh {
 fn written(mesh: &TriMesh, format: Format, coordinates: Coordinates) -> Vec<u8> {
     let mut bytes = Vec::new();
     match format {
-        Format::Obj => obj::write(mesh, &mut bytes),
+        Format::Obj => obj::write(mesh, coordinates, &mut bytes),
         Format::Ply => ply::write(mesh, coordinates, &mut bytes),
         Format::Stl => stl::write(mesh, &mut bytes),
-        Format::Off => off::write(mesh, &mut bytes),
+        Format::Off => off::write(mesh, coordinates, &mut bytes),
     }
     .unwrap();
     bytes

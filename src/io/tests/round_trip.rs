@@ -41,13 +41,13 @@ fn numbers_are_as_short_as_they_can_be() {
         (-0.0, "-0"),
         (1.0, "1"),
         (-2.5, "-2.5"),
-        (f64::from(0.1f32), "0.1"),
+        (f64::from(0.1f32), "0.10000000149011612"),
         (0.1, "0.1"),
         (123456.789, "123456.789"),
         (1.0 / 3.0, "0.3333333333333333"),
         (1e300, "1e300"),
         (1e-7, "1e-7"),
-        (f64::from(f32::MIN_POSITIVE), "1.1754944e-38"),
+        (f64::from(f32::MIN_POSITIVE), "1.1754943508222875e-38"),
         (5e-324, "5e-324"),
         (16777217.0, "16777217"),
     ];
@@ -90,6 +90,29 @@ proptest! {
                     prop_assert_eq!(found, expected);
                 }
             }
+        }
+    }
+
+    #[test]
+    fn text_is_the_same_number_to_readers_of_32_and_of_64_bits(x in finite_f64()) {
+        let rounded = Coordinates::F32.round(x);
+        prop_assume!(rounded.is_finite());
+        for written in [x, rounded] {
+            let mut bytes = Vec::new();
+            text::write_number(written, &mut bytes).unwrap();
+            let word = std::str::from_utf8(&bytes).unwrap();
+            prop_assert_eq!(word.parse::<f64>().unwrap().to_bits(), written.to_bits());
+            // Whoever reads 32 bits, or 64 and rounds them.
+            prop_assert_eq!(f64::from(word.parse::<f32>().unwrap()).to_bits(), rounded.to_bits());
+        }
+    }
+
+    #[test]
+    fn every_format_has_the_same_32_bits(mesh in meshes(-1e30..1e30)) {
+        let expected = good(Format::Ply, written(&mesh, Format::Ply, Coordinates::F32));
+        for format in [Format::Obj, Format::Off] {
+            let found = good(format, written(&mesh, format, Coordinates::F32));
+            prop_assert_eq!(&found, &expected, "{}", format);
         }
     }
 
