@@ -5,7 +5,7 @@ use exocarp::error::Error;
 use exocarp::lattice::LEAF_SIZE;
 use exocarp::mesh::{TriMesh, shapes};
 use exocarp::offset::{
-    Cut, Length, OffsetResult, OffsetSettings, PieceSink, Precision, Tolerance, VoxelSize, offset,
+    Cut, Length, OffsetResult, OffsetSettings, PieceSink, Precision, SignMode, Tolerance, VoxelSize, offset,
     offset_in_slabs,
 };
 use exocarp::run::RunSettings;
@@ -111,28 +111,75 @@ fn slabs_one_after_the_other_give_the_whole() {
     }
 }
 
+/// Gathers the pieces of one tile after those of another.
+struct Continued<'a>(&'a mut Gathered);
+
+impl PieceSink for Continued<'_> {
+    fn restart(&mut self) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn piece(&mut self, piece: &SlabContour) -> Result<(), Error> {
+        self.0.piece(piece)
+    }
+}
+
+/// The meshes of all tiles, one after the other.
+fn in_tiles(mesh: &TriMesh, settings: &OffsetSettings, of: u32) -> TriMesh {
+    let mut all = Gathered::default();
+    for number in 1..=of {
+        let cut = Cut::Tile { number, of };
+        offset_in_slabs(mesh, settings, cut, &mut Continued(&mut all), &run()).unwrap();
+    }
+    all.0
+}
+
 #[test]
 fn tiles_one_after_the_other_give_the_whole() {
     let mesh = rotated(shapes::anchor(6));
     let settings = settings(0.05, 0.012);
     let whole = offset(&mesh, &settings, &run()).unwrap();
     for of in [2, 5, 40] {
-        let mut all = TriMesh::default();
-        for number in 1..=of {
-            let mut piece = Gathered(std::mem::take(&mut all));
-            struct Continued<'a>(&'a mut Gathered);
-            impl PieceSink for Continued<'_> {
-                fn restart(&mut self) -> Result<(), Error> {
-                    Ok(())
-                }
-                fn piece(&mut self, piece: &SlabContour) -> Result<(), Error> {
-                    self.0.piece(piece)
-                }
-            }
-            let cut = Cut::Tile { number, of };
-            offset_in_slabs(&mesh, &settings, cut, &mut Continued(&mut piece), &run()).unwrap();
-            all = piece.0;
-        }
-        assert!(all == whole.mesh, "{of} tiles: the meshes differ");
+        assert!(in_tiles(&mesh, &settings, of) == whole.mesh, "{of} tiles: the meshes differ");
     }
+}
+
+/// The same surface with its outside inside: everything far away is solid, and the result ends where the lattice does.
+fn inside_out(mut mesh: TriMesh) -> TriMesh {
+    mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    mesh
+}
+
+#[test]
+fn inside_out_models_in_slabs_and_tiles_give_the_whole() {
+    let mut without_surface = 0;
+    for (name, mesh) in [
+        ("box", inside_out(shapes::cube(1))),
+        ("sphere", inside_out(rotated(shapes::sphere(6)))),
+        ("linked_tori", inside_out(stretched(rotated(shapes::linked_tori(8))))),
+    ] {
+        // The last distances are larger than the hollow is deep: no surface is left but the end of the lattice.
+        for (distance, voxel) in [(0.0, 0.2), (-0.3, 0.11), (2.5, 0.4), (9.0, 0.9)] {
+            let settings = OffsetSettings {
+                sign: SignMode::Pseudonormal,
+                keep_band: true,
+                half_width: 3.0,
+                ..settings(distance, voxel)
+            };
+            let what = format!("{name} {distance}");
+            let whole = offset(&mesh, &settings, &run()).unwrap();
+            assert!(whole.statistics.edges.sign_jumps > 0, "{what}");
+            without_surface += u32::from(whole.statistics.vdb.active_voxels == 0);
+            for of in [2, 5] {
+                let tiles = in_tiles(&mesh, &settings, of);
+                assert!(tiles == whole.mesh, "{what}: the meshes of {of} tiles differ");
+            }
+            let mut pieces = Gathered::default();
+            let memory = Cut::Memory(16_000 * whole.statistics.vdb.leaves.max(100));
+            let slabs = offset_in_slabs(&mesh, &settings, memory, &mut pieces, &run()).unwrap();
+            assert!(pieces.0 == whole.mesh, "{what}: the mesh in slabs differs");
+            assert_same(&slabs, &whole, &what);
+        }
+    }
+    assert!(without_surface > 2, "{without_surface}");
 }

@@ -102,12 +102,10 @@ fn cut_slabs(prepared: &Prepared<'_>, settings: &BandSettings, cut: Cut) -> Resu
     check_countable(distance.mesh(), settings)?;
     let halo = halo(&prepared.settings.contour(settings.lattice));
     let layers = count_layers(distance, settings, run)?;
-    if layers.leaves.is_empty() {
-        // Nothing to see there, and that is said.
-        return Ok(vec![Slab::WHOLE]);
-    }
     Ok(match cut {
         Cut::Tile { number, of } => vec![super::slabs::in_shares(&layers, halo, of)[number as usize - 1]],
+        // Nothing to see there, and that is said.
+        Cut::Memory(_) if layers.leaves.is_empty() => vec![Slab::WHOLE],
         Cut::Memory(bytes) => {
             let most = leaves_within(distance.mesh(), bytes);
             super::slabs::within(&layers, halo, most)

@@ -14,8 +14,13 @@ fn slabs(layers: &Layers, halo: i32, ends: &[usize]) -> Vec<Slab> {
     starts.zip(ends).map(|(start, &end)| Slab::new(plane(start), plane(end), halo)).collect()
 }
 
-/// `count` slabs with about the same share of the surface each. Where there are fewer layers than slabs, some own nothing.
+/// `count` slabs with about the same share of the surface each. Where there are fewer layers than slabs, some own nothing;
+/// where there are none, the first one owns everything: the sign may still jump where no surface is.
 pub(super) fn in_shares(layers: &Layers, halo: i32, count: u32) -> Vec<Slab> {
+    if layers.leaves.is_empty() {
+        let nothing = Slab::new(i32::MAX, i32::MAX, halo);
+        return std::iter::once(Slab::WHOLE).chain((1..count).map(|_| nothing)).collect();
+    }
     let total = layers.total();
     let mut ends = Vec::with_capacity(count as usize);
     let (mut sum, mut end) = (0, 0);
@@ -86,6 +91,12 @@ mod tests {
         // More slabs than layers.
         let shares = owned(&layers(&[5, 5]), &in_shares(&layers(&[5, 5]), 16, 5));
         assert_eq!((shares.len(), shares.iter().sum::<u64>()), (5, 10));
+        // No layers at all: still, everything has one owner.
+        let slabs = in_shares(&layers(&[]), 16, 3);
+        for x in [i32::MIN, -8, 0, 1 << 30] {
+            assert_eq!(slabs.iter().filter(|slab| slab.owns(Ijk::new(x, 0, 0))).count(), 1, "{x}");
+        }
+        assert!(slabs[1..].iter().all(|slab| !slab.computes(Ijk::new(1 << 30, 0, 0), 1 << 20)));
     }
 
     #[test]
