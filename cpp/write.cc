@@ -58,6 +58,31 @@ std::uint32_t flags(Codec codec)
     }
 }
 
+// The archive takes zip off the compression of every grid that says it is a level set or a fog volume, though readers take
+// each grid's compression from the file. It asks the grid itself, and then writes the metadata of a copy: so only the copy
+// says what this is.
+class Zipped : public openvdb::FloatGrid {
+public:
+    explicit Zipped(const openvdb::FloatGrid& grid)
+        : openvdb::FloatGrid(openvdb::ConstPtrCast<TreeType>(grid.constTreePtr()))
+    {
+        insertMeta(grid);
+        setTransform(grid.constTransform().copy());
+        mClass = getGridClass();
+        clearGridClass();
+    }
+
+    openvdb::GridBase::ConstPtr copyGrid() const override
+    {
+        const auto copy = openvdb::ConstPtrCast<GridBase>(openvdb::FloatGrid::copyGrid());
+        copy->setGridClass(mClass);
+        return copy;
+    }
+
+private:
+    openvdb::GridClass mClass;
+};
+
 openvdb::MetaMap meta_map(const rust::Vec<MetaItem>& items)
 {
     openvdb::MetaMap map;
@@ -83,6 +108,7 @@ void write_file(
 {
     initialize();
     openvdb::GridCPtrVec grids{surface.held().grid};
+    if (codec == Codec::Zip) grids[0] = std::make_shared<Zipped>(*surface.held().grid);
     if (closest) grids.push_back(closest->held().grid);
     const openvdb::MetaMap map = meta_map(metadata);
     Writer writer;

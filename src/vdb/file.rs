@@ -14,13 +14,14 @@ use std::io::Read;
 use std::path::Path;
 
 /// How the values in a file are compressed. In all cases inactive values are left out, since a level set
-/// has two of them only.
+/// has two of them only. Bands of 2% at 256 voxels, in MB, without compression, with Zip and with Blosc: fandisk 4.28,
+/// 3.01, 2.86; armadillo 3.99, 3.95, 3.81. Values are distances, whose last digits are noise unless surfaces are plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Compression {
     /// Blosc: small and quick. Few readers lack it.
     #[default]
     Blosc,
-    /// Zip: somewhat smaller, several times slower, and read by all.
+    /// Zip: for readers that lack Blosc, and smaller than Blosc with half floats.
     Zip,
     /// Not compressed.
     None,
