@@ -331,10 +331,9 @@ mod tests {
     fn the_background_is_never_below_the_half_width() {
         for n in 1..10_000 {
             let voxel = 1.0 / f64::from(n);
+    use proptest::prelude::*;
             for half_width in [1.0, 1.5, 3.0, 4.0] {
-                let b = Lattice { voxel }.background(half_width);
-                assert!(f64::from(b) / voxel >= half_width, "{voxel} {half_width}");
-                assert!(f64::from(b.next_down().next_down()) < half_width * voxel, "{voxel} {half_width}");
+                check_background(voxel, half_width);
             }
         }
     }
@@ -344,6 +343,48 @@ mod tests {
         for (voxel, half_width) in
             [(0.0, 3.0), (-1.0, 3.0), (f64::NAN, 3.0), (1.0, 0.5), (1.0, f64::NAN), (1e-40, 3.0), (1e38, 9.0)]
         {
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        #[test]
+        fn nor_is_it_at_any_voxel_size(voxel in voxels(-40..40), half_width in 1.0..20.0f64) {
+            check_background(voxel, 3.0);
+            check_background(voxel, half_width);
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+
+        #[test]
+        fn no_voxel_size_fails_the_test_of_the_background(voxel in voxels(-15..40)) {
+            let run = RunSettings::with_threads(1).unwrap();
+            let grid = SurfaceGrid::new(Lattice { voxel }, 3.0).unwrap();
+            prop_assert_eq!(grid.check_level_set(&run).unwrap(), [""; 0]);
+        }
+    }
+
+    /// Voxel sizes of all magnitudes: those that an f32 holds, and those between two of them.
+    fn voxels(exponents: std::ops::Range<i32>) -> impl Strategy<Value = f64> {
+        (1.0..2.0f64, exponents, any::<bool>()).prop_map(|(mantissa, exponent, single)| {
+            let voxel = mantissa * 2f64.powi(exponent);
+            if single { f64::from(voxel as f32) } else { voxel }
+        })
+    }
+
+    /// The background counts at least `half_width` voxels, however that is computed, and hardly more.
+    fn check_background(voxel: f64, half_width: f64) {
+        let background = Lattice { voxel }.background(half_width);
+        let what = format!("{voxel:e} {half_width}");
+        // As checkLevelSet computes it, and so that a voxel size that went through a product or two does no harm.
+        assert!(f64::from(background) / voxel >= half_width * (1.0 + 1e-15), "{what}");
+        let (single, voxel_f32) = (half_width as f32, voxel as f32);
+        assert!(background / voxel_f32 >= single, "{what}");
+        assert!(background >= single * voxel_f32, "{what}");
+        assert!(background >= (half_width * voxel) as f32, "{what}");
+        assert!(f64::from(background) < half_width * voxel * (1.0 + 5e-7), "{what}");
+    }
+
             let error = SurfaceGrid::new(Lattice { voxel }, half_width).unwrap_err();
             assert!(matches!(error, VdbError::Size { .. }), "{error}");
         }

@@ -6,7 +6,7 @@
 //! ```text
 //!  active voxels    exactly those with abs(phi) < background
 //!  inactive values  exactly +background (outside) or -background (inside), in leaves and tiles
-//!  background       half width * h, rounded up to the next f32: checkLevelSet wants 3 h at least
+//!  background       a hair above half width * h: checkLevelSet wants 3 h at least, and no rounding undercuts that
 //! ```
 //!
 //! phi is in model units, negative inside, and never 0. [`SurfaceGrid::check_level_set`] runs OpenVDB's

@@ -2,7 +2,7 @@
 
 usage: make_vdb.py FILE.vdb
 
-All but the mask are of one sphere of radius 2 around node (0, 0, 0), with voxels of 0.1.
+All but the mask are of one sphere of radius 2.01 around node (0, 0, 0), with voxels of 0.1.
 """
 
 import sys
@@ -14,7 +14,7 @@ except ImportError:
 
 
 def sphere(name, transform=None):
-    grid = vdb.createLevelSetSphere(radius=2.0, center=(0, 0, 0), voxelSize=0.1, halfWidth=3.0)
+    grid = vdb.createLevelSetSphere(radius=2.01, center=(0, 0, 0), voxelSize=0.1, halfWidth=3.0)
     grid.name = name
     if transform:
         grid.transform = transform

@@ -121,9 +121,10 @@ fn a_file_says_what_it_holds() {
     assert_eq!(surface.active_voxels, SPHERE.band().surface.active_voxels());
     assert_eq!(surface.active_voxels, closest.active_voxels);
     let [low, high] = surface.index_bbox.unwrap();
-    assert_eq!((low.0, high.0), ([-22; 3], [22; 3]));
+    // The background is a hair above three voxels, so that nodes at exactly three are in the band.
+    assert_eq!((low.0, high.0), ([-23; 3], [23; 3]));
     let [low, high] = surface.world_bbox.unwrap();
-    assert!((0..3).all(|i| (low[i] + 2.2).abs() < 1e-12 && (high[i] - 2.2).abs() < 1e-12));
+    assert!((0..3).all(|i| (low[i] + 2.3).abs() < 1e-12 && (high[i] - 2.3).abs() < 1e-12));
     // The statistics that viewers read from the header.
     let statistics = |name: &str| surface.metadata.iter().any(|(n, _)| n == name);
     assert!(
