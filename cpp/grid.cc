@@ -31,7 +31,7 @@ openvdb::Coord coord(rust::Slice<const std::int32_t> ijk, std::size_t n)
 }
 
 template <class Grid>
-void describe(Grid& grid, const char* name, double voxel, rust::Str creator)
+void describe(Grid& grid, const std::string& name, double voxel, rust::Str creator)
 {
     grid.setName(name);
     grid.setCreator(std::string(creator));
@@ -68,11 +68,11 @@ std::unique_ptr<FloatGrid> new_float_grid(double voxel, float background, rust::
     return std::make_unique<FloatGrid>(std::make_shared<Held<float>>(grid));
 }
 
-std::unique_ptr<Int32Grid> new_int32_grid(double voxel, rust::Str creator)
+std::unique_ptr<Int32Grid> new_int32_grid(double voxel, rust::Str name, rust::Str creator)
 {
     initialize();
     auto grid = openvdb::Int32Grid::create(-1);
-    describe(*grid, "closest", voxel, creator);
+    describe(*grid, std::string(name), voxel, creator);
     return std::make_unique<Int32Grid>(std::make_shared<Held<std::int32_t>>(grid));
 }
 

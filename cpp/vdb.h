@@ -91,7 +91,7 @@ public:
 };
 
 std::unique_ptr<FloatGrid> new_float_grid(double voxel, float background, rust::Str creator);
-std::unique_ptr<Int32Grid> new_int32_grid(double voxel, rust::Str creator);
+std::unique_ptr<Int32Grid> new_int32_grid(double voxel, rust::Str name, rust::Str creator);
 
 std::unique_ptr<FloatGrid> mesh_band(
     double voxel,

@@ -3,6 +3,7 @@
 mod common;
 
 use common::{exocarp, names};
+use exocarp::mesh::{TriMesh, shapes};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,15 +18,20 @@ const MEMORY: &str = "132M";
 struct Bench {
     dir: tempfile::TempDir,
     input: String,
+    distance: &'static str,
     resolution: &'static str,
 }
 
 impl Bench {
     fn new(resolution: &'static str) -> Bench {
+        Bench::of(&shapes::carved_cube(8), "3%", resolution)
+    }
+
+    fn of(model: &TriMesh, distance: &'static str, resolution: &'static str) -> Bench {
         let dir = tempfile::tempdir().unwrap();
-        let input = dir.path().join("carved_cube.ply").display().to_string();
-        assert_eq!(exocarp(&["model", "carved_cube", "-o", &input, "--detail", "8"]).code, 0);
-        Bench { dir, input, resolution }
+        let input = dir.path().join("model.ply");
+        model.save(&input).unwrap();
+        Bench { input: input.display().to_string(), dir, distance, resolution }
     }
 
     fn at(&self, name: &str) -> PathBuf {
@@ -38,7 +44,8 @@ impl Bench {
 
     /// `exocarp offset` of the model with these arguments.
     fn run(&self, arguments: &[&str]) -> common::Outcome {
-        let mut all = vec!["offset", self.input.as_str(), "-d", "3%", "--resolution", self.resolution];
+        let distance = ["-d", self.distance, "--resolution", self.resolution];
+        let mut all = [&["offset", self.input.as_str()], &distance[..]].concat();
         all.extend(arguments);
         exocarp(&all)
     }
@@ -138,12 +145,61 @@ fn merged_tiles_are_the_whole_mesh() {
 fn merged_bands_are_the_whole_band() {
     let bench = Bench::new("72");
     let (mesh, whole) = (bench.text("whole.ply"), bench.text("whole.vdb"));
-    for more in [&["--unit", "mm"][..], &["--half", "--vdb-compression", "zip"]] {
+    for more in [&["--unit", "mm"][..], &["--half", "--vdb-compression", "zip"], &["--closest"]] {
         bench.offset(&[&["-o", &mesh, "--vdb", &whole], more].concat());
         let outcome = bench.merge(&bench.tiles(3, "vdb", more), "merged.vdb");
         assert_eq!((outcome.code, outcome.stderr.as_str()), (0, ""));
         assert!(bench.same("whole.vdb", "merged.vdb"), "{more:?}");
     }
+}
+
+#[test]
+fn tiles_of_an_inside_out_model_are_the_whole() {
+    let mut cube = shapes::cube(1);
+    cube.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    // At a distance of some voxels, and where nothing is left of the hollow but the end of the lattice.
+    for distance in ["-3%", "150%"] {
+        let bench = Bench::of(&cube, distance, "24");
+        let (mesh, band) = (bench.text("whole.ply"), bench.text("whole.vdb"));
+        let warned = bench.run(&["-o", &mesh, "--vdb", &band, "--closest"]);
+        assert_eq!(warned.code, 0, "{warned:?}");
+        for of in [1, 2, 5] {
+            bench.tiles(of, "vdb", &["--closest"]);
+            let tiles = |name: &str, extension: &str| -> Vec<String> {
+                (1..=of).map(|n| bench.text(&format!("{name}{n}.{extension}"))).collect()
+            };
+            assert_eq!(bench.merge(&tiles("tile", "vdb"), "merged.vdb").code, 0);
+            assert_eq!(bench.merge(&tiles("mesh", "ply"), "merged.ply").code, 0);
+            assert!(bench.same("whole.vdb", "merged.vdb"), "{distance} {of}: the bands differ");
+            assert!(bench.same("whole.ply", "merged.ply"), "{distance} {of}: the meshes differ");
+        }
+        let (streamed, band) = (bench.text("streamed.ply"), bench.text("streamed.vdb"));
+        bench.offset(&["-o", &streamed, "--vdb", &band, "--closest", "--stream"]);
+        assert!(bench.same("whole.ply", "streamed.ply") && bench.same("whole.vdb", "streamed.vdb"));
+    }
+}
+
+#[test]
+fn closest_triangles_are_stored_on_request_only() {
+    let bench = Bench::new("48");
+    let grids = |name: &str, more: &[&str]| -> (Vec<Value>, u64) {
+        let path = bench.text(name);
+        let counted = bench.counted(&[&["--vdb", &path], more].concat());
+        let info: Value = serde_json::from_str(&exocarp(&["info", "--json", &path]).stdout).unwrap();
+        let names = info["grids"].as_array().unwrap().iter().map(|grid| grid["name"].clone()).collect();
+        (names, counted["vdb"]["memory"].as_u64().unwrap())
+    };
+    let (names, memory) = grids("surface.vdb", &[]);
+    assert_eq!(names, ["surface"]);
+    let (names, more_memory) = grids("both.vdb", &["--closest"]);
+    assert_eq!(names, ["surface", "surface_closest"]);
+    // As many leaves of numbers of the same size.
+    assert!(more_memory > memory * 3 / 2, "{more_memory} {memory}");
+    let size = |name: &str| fs::metadata(bench.at(name)).unwrap().len();
+    assert!(size("both.vdb") > size("surface.vdb"));
+    let outcome = bench.run(&["-o", &bench.text("out.ply"), "--closest"]);
+    outcome.fails_with(2);
+    assert!(outcome.stderr.contains("--vdb"), "{}", outcome.stderr);
 }
 
 #[test]
@@ -169,9 +225,12 @@ fn tiles_that_do_not_belong_together_are_refused_and_nothing_is_left() {
     bench.offset(&["-o", &whole]);
     let bytes = fs::read(&tiles[2]).unwrap();
     fs::write(&cut, &bytes[..bytes.len() - 7]).unwrap();
+    let closest = bench.text("closest.vdb");
+    bench.offset(&["-o", &bench.text("closest.ply"), "--vdb", &closest, "--closest", "--tile", "3/3"]);
+    let with_closest = [bands[0].clone(), bands[1].clone(), closest];
     let before = names(bench.dir.path());
     let [a, b, c] = [0, 1, 2].map(|n| tiles[n].clone());
-    let cases: [(&[String], &str, &str); 9] = [
+    let cases: [(&[String], &str, &str); 10] = [
         (&[a.clone(), b.clone()], "out.ply", "tile 3 of 3 is missing"),
         (&[a.clone(), b.clone(), b.clone()], "out.ply", "tile 2 is there twice"),
         (&[a.clone(), b.clone(), other], "out.ply", "of another model"),
@@ -181,6 +240,7 @@ fn tiles_that_do_not_belong_together_are_refused_and_nothing_is_left() {
         (&[a.clone(), b.clone(), c], "out.stl", "must have the same format; here it is .ply"),
         (&[a, b], "out.vdb", "not an OpenVDB file"),
         (&bands[..2], "out.vdb", "tile 3 of 3 is missing"),
+        (&with_closest, "out.vdb", "was made with other settings"),
     ];
     for (tiles, output, reason) in cases {
         let outcome = bench.merge(tiles, output);

@@ -30,17 +30,14 @@ impl LeafBatch {
         self.origins.len()
     }
 
-    /// A copy that has no lists.
-    pub fn without_lists(&self) -> LeafBatch {
-        let LeafBatch { origins, values, active, inside, closest, inside_blocks, lists: _ } = self;
+    /// A copy of what a level set holds: no masks of the inside, closest triangles or lists.
+    pub fn level_set(&self) -> LeafBatch {
         LeafBatch {
-            origins: origins.clone(),
-            values: values.clone(),
-            active: active.clone(),
-            inside: inside.clone(),
-            closest: closest.clone(),
-            inside_blocks: inside_blocks.clone(),
-            lists: BlockLists::default(),
+            origins: self.origins.clone(),
+            values: self.values.clone(),
+            active: self.active.clone(),
+            inside_blocks: self.inside_blocks.clone(),
+            ..LeafBatch::default()
         }
     }
 

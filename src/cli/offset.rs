@@ -74,6 +74,7 @@ fn settings(arguments: &OffsetArguments, session: &Session) -> Result<OffsetSett
         sign: arguments.sign.mode(),
         half_width: if arguments.more.vdb.is_some() { STORED_HALF_WIDTH } else { 1.0 },
         keep_band: arguments.more.vdb.is_some(),
+        keep_closest: arguments.closest,
         precision: precision(arguments.more.f64),
         tolerance: arguments.tolerance,
         resolve: arguments.resolve,

@@ -15,7 +15,6 @@ use exocarp::mesh::CleanReport;
 use exocarp::offset::{Length, OffsetSettings, VoxelSize, offset_band};
 use exocarp::run::Phase;
 use exocarp::thicken::{ThickenResult, ThickenSettings, ThickenStatistics, ThickenTimes, thicken};
-use exocarp::vdb::Band;
 use serde::Serialize;
 use std::path::Path;
 
@@ -81,9 +80,7 @@ fn save_level_set(
         ..OffsetSettings::default()
     };
     let solid = offset_band(&result.mesh, &settings, &session.run)?;
-    // Closest triangles would be those of the solid, which is another file.
-    let band = solid.band.map(|band| Band { closest: None, ..band });
-    band.map_or(Ok(()), |band| save_vdb(&band, path, None, &vdb_options(&arguments.more), session))
+    solid.band.map_or(Ok(()), |band| save_vdb(&band, path, None, &vdb_options(&arguments.more), session))
 }
 
 fn settings(arguments: &ThickenArguments, session: &Session) -> Result<ThickenSettings, Failure> {

@@ -67,7 +67,8 @@ pub fn offset_in_slabs(
         let on_lattice = |band_settings: &BandSettings, times| -> Result<OffsetResult, Error> {
             sink.restart()?;
             let mut statistics = OffsetStatistics::new(band_settings, times);
-            let mut stored = settings.keep_band.then(|| StoredBand::new(band_settings)).transpose()?;
+            let stored = || StoredBand::new(band_settings, settings);
+            let mut stored = settings.keep_band.then(stored).transpose()?;
             let started = Instant::now();
             let slabs = cut_slabs(prepared, band_settings, cut)?;
             statistics.times.band += started.elapsed().as_secs_f64();

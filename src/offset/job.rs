@@ -22,6 +22,7 @@ fn of_version(version: &str, mesh: &TriMesh, settings: &OffsetSettings) -> u64 {
         sign,
         half_width,
         keep_band: _,
+        keep_closest: _,
         precision,
         tolerance,
         resolve,
@@ -172,7 +173,7 @@ mod tests {
         ];
         assert_eq!(all.iter().collect::<BTreeSet<_>>().len(), all.len(), "{all:x?}");
         let kept =
-            |s: &mut OffsetSettings| (s.max_memory, s.keep_band) = (Some(1), true);
+            |s: &mut OffsetSettings| (s.max_memory, s.keep_band, s.keep_closest) = (Some(1), true, true);
         assert_eq!(with(&kept), all[0]);
     }
 }

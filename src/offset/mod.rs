@@ -41,14 +41,14 @@ use crate::vdb::Band;
 use on_slab::on_slab;
 use resolving::until_seen;
 use std::time::Instant;
-use stored_band::StoredBand;
+use stored_band::{StoredBand, Wanted};
 
 /// What [`offset`] returns.
 #[derive(Debug)]
 pub struct OffsetResult {
     /// The offset surface: closed, 2-manifold, free of intersections.
     pub mesh: TriMesh,
-    /// The narrow band: phi and the closest triangles, in OpenVDB grids, where it was to be kept.
+    /// The narrow band, in OpenVDB grids, where it was to be kept: phi, and the closest triangles where they were, too.
     pub band: Option<Band>,
     /// What happened on the way.
     pub statistics: OffsetStatistics,
@@ -67,10 +67,11 @@ pub struct OffsetResult {
 /// - [`Error::Cancelled`].
 pub fn offset(mesh: &TriMesh, settings: &OffsetSettings, run: &RunSettings) -> Result<OffsetResult, Error> {
     Prepared::with(mesh, settings, run, |prepared| {
+        let stored = Wanted::by(settings);
         let fits = |band_settings: &BandSettings| {
-            unsuitable::check_memory(mesh, band_settings, settings.keep_band, settings.max_memory).is_ok()
+            unsuitable::check_memory(mesh, band_settings, stored, settings.max_memory).is_ok()
         };
-        unsuitable::check_memory(mesh, &prepared.band_settings, settings.keep_band, settings.max_memory)?;
+        unsuitable::check_memory(mesh, &prepared.band_settings, stored, settings.max_memory)?;
         until_seen(prepared, fits, |band_settings, times| {
             on_lattice(prepared.distance, settings, band_settings, times, run)
         })
@@ -83,7 +84,7 @@ pub fn offset(mesh: &TriMesh, settings: &OffsetSettings, run: &RunSettings) -> R
 /// [`Error::Memory`] when it does not; [`Error::Settings`].
 pub fn check_memory(mesh: &TriMesh, settings: &OffsetSettings) -> Result<(), Error> {
     let band_settings = settings.resolve(mesh)?;
-    Ok(unsuitable::check_memory(mesh, &band_settings, settings.keep_band, settings.max_memory)?)
+    Ok(unsuitable::check_memory(mesh, &band_settings, Wanted::by(settings), settings.max_memory)?)
 }
 
 /// The narrow band of an offset, in OpenVDB grids, and no mesh: no edge is intersected.
@@ -97,10 +98,11 @@ pub fn offset_band(
 ) -> Result<OffsetResult, Error> {
     Prepared::with(mesh, settings, run, |prepared| {
         let Prepared { distance, ref band_settings, times, .. } = *prepared;
-        unsuitable::check_memory(mesh, band_settings, true, settings.max_memory)?;
+        let stored = Wanted::by(&OffsetSettings { keep_band: true, ..settings.clone() });
+        unsuitable::check_memory(mesh, band_settings, stored, settings.max_memory)?;
         let mut statistics = OffsetStatistics::new(band_settings, times);
         let started = Instant::now();
-        let mut stored = StoredBand::new(band_settings)?;
+        let mut stored = StoredBand::new(band_settings, settings)?;
         statistics.add_band(&narrow_band::store(distance, band_settings, &mut stored, run)?);
         let band = stored.finish();
         statistics.times.band += started.elapsed().as_secs_f64();
@@ -156,7 +158,7 @@ fn on_lattice(
     run: &RunSettings,
 ) -> Result<OffsetResult, Error> {
     let mut statistics = OffsetStatistics::new(band_settings, times);
-    let mut stored = settings.keep_band.then(|| StoredBand::new(band_settings)).transpose()?;
+    let mut stored = settings.keep_band.then(|| StoredBand::new(band_settings, settings)).transpose()?;
     let done = on_slab(distance, settings, band_settings, stored.as_mut(), &mut statistics, run)?;
     let Some((SlabContour { mesh, .. }, lost)) = done else {
         return Err(EmptyResult::explain(distance, band_settings, run)?.into());

@@ -1,6 +1,6 @@
 //! The band as the edges and the contour need it, in plain arrays; and into OpenVDB, where it is to be kept.
 
-use super::stored_band::StoredBand;
+use super::stored_band::{StoredBand, Wanted};
 use crate::band::{
     self, BOXES_PER_BATCH, BandSettings, InsideBlocks, LeafBatch, LeafMask, LoneNodes, SignField,
 };
@@ -85,7 +85,7 @@ struct Kept {
 }
 
 impl Kept {
-    fn new(batch: &LeafBatch, slab: Slab, next: Next, is_stored: bool) -> Kept {
+    fn new(batch: &LeafBatch, slab: Slab, next: Next, wanted: Wanted) -> Kept {
         let own = batch.origins.iter().zip(&batch.active).filter(|leaf| slab.owns(*leaf.0));
         let owned = own.fold([0; 2], |[leaves, nodes], (_, active)| {
             [leaves + 1, nodes + active.iter().map(|word| u64::from(word.count_ones())).sum::<u64>()]
@@ -96,7 +96,7 @@ impl Kept {
             inside_blocks: batch.inside_blocks.clone(),
             owned,
             near: (next == Next::Contour).then(near),
-            stored: is_stored.then(|| batch.without_lists()),
+            stored: wanted.of(batch),
         }
     }
 }
@@ -123,8 +123,8 @@ impl Parts {
         let mut parts = Parts::default();
         let mut counts = BandCounts::default();
         let mut inside_blocks = Vec::new();
-        let is_stored = stored.is_some();
-        let keep = |batch: &LeafBatch| Kept::new(batch, slab, next, is_stored);
+        let wanted = stored.as_ref().map_or(Wanted::Nothing, |stored| stored.wanted());
+        let keep = |batch: &LeafBatch| Kept::new(batch, slab, next, wanted);
         let mut take = |kept: Kept, parts: &mut Parts| -> Result<(), Error> {
             if let (Some(stored), Some(batch)) = (&mut stored, &kept.stored) {
                 stored.insert(batch, slab)?;
@@ -135,7 +135,7 @@ impl Parts {
             Ok(())
         };
         // What only stays here need not be handed on in between.
-        let at_a_time = if is_stored { BOXES_PER_BATCH } else { usize::MAX };
+        let at_a_time = if wanted == Wanted::Nothing { usize::MAX } else { BOXES_PER_BATCH };
         let filter = band::build_kept(distance, settings, at_a_time, run, keep, |kept| {
             inside_blocks.extend_from_slice(&kept.inside_blocks);
             take(kept, &mut parts)

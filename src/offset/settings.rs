@@ -60,6 +60,9 @@ pub struct OffsetSettings {
     pub half_width: f64,
     /// Keep the narrow band, in OpenVDB grids. Without, it is gone when the mesh is done.
     pub keep_band: bool,
+    /// Keep with the band, where it is kept, the closest triangle of each of its voxels: a second grid, of integers, which
+    /// many programs cannot read. Without, no closest triangles are stored.
+    pub keep_closest: bool,
     /// Coordinates of the result.
     pub precision: Precision,
     /// Refine the result until it is this near to the true offset surface; `None` leaves it as the lattice
@@ -82,6 +85,7 @@ impl Default for OffsetSettings {
             sign: SignMode::Closed,
             half_width: 1.0,
             keep_band: false,
+            keep_closest: false,
             precision: Precision::F32,
             tolerance: None,
             resolve: 0,

@@ -87,6 +87,6 @@ pub struct VdbStatistics {
     pub active_voxels: u64,
     /// Its leaves.
     pub leaves: u64,
-    /// Bytes in memory, both grids; 0 where the band is not kept.
+    /// Bytes in memory, of both grids where there are two; 0 where the band is not kept.
     pub memory: u64,
 }

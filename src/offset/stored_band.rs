@@ -1,27 +1,65 @@
 //! The band in OpenVDB, as it grows.
 
+use super::OffsetSettings;
 use crate::band::{BandSettings, LEAF_DIM, LEAF_SIZE, LeafBatch};
 use crate::filter::Block;
 use crate::lattice::Ijk;
 use crate::slab::Slab;
 use crate::vdb::{Band, ClosestGrid, SurfaceGrid, VdbError};
 
+/// What is stored of a batch of leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    /// Nothing.
+    Nothing,
+    /// The level set.
+    LevelSet,
+    /// And the closest triangles.
+    WithClosest,
+}
+
+impl Wanted {
+    /// What is stored by these settings.
+    pub(super) fn by(settings: &OffsetSettings) -> Wanted {
+        match (settings.keep_band, settings.keep_closest) {
+            (false, _) => Wanted::Nothing,
+            (true, false) => Wanted::LevelSet,
+            (true, true) => Wanted::WithClosest,
+        }
+    }
+
+    /// A copy of what is stored of a batch.
+    pub(crate) fn of(self, batch: &LeafBatch) -> Option<LeafBatch> {
+        match self {
+            Wanted::Nothing => None,
+            Wanted::LevelSet => Some(batch.level_set()),
+            Wanted::WithClosest => Some(LeafBatch { closest: batch.closest.clone(), ..batch.level_set() }),
+        }
+    }
+}
+
 /// A band that is being filled.
 #[derive(Debug)]
 pub(crate) struct StoredBand {
     surface: SurfaceGrid,
-    closest: ClosestGrid,
+    /// Only where it was asked for.
+    closest: Option<ClosestGrid>,
 }
 
 impl StoredBand {
-    pub(crate) fn new(settings: &BandSettings) -> Result<StoredBand, VdbError> {
+    pub(crate) fn new(band: &BandSettings, settings: &OffsetSettings) -> Result<StoredBand, VdbError> {
         Ok(StoredBand {
-            surface: SurfaceGrid::new(settings.lattice, settings.half_width)?,
-            closest: ClosestGrid::new(settings.lattice)?,
+            surface: SurfaceGrid::new(band.lattice, band.half_width)?,
+            closest: settings.keep_closest.then(|| ClosestGrid::new(band.lattice)).transpose()?,
         })
     }
 
-    /// Adds the leaves and the inside blocks that `slab` owns.
+    /// What is stored of a batch of leaves.
+    pub(crate) fn wanted(&self) -> Wanted {
+        if self.closest.is_some() { Wanted::WithClosest } else { Wanted::LevelSet }
+    }
+
+    /// Adds what [`Wanted`] keeps of the leaves and the inside blocks that `slab` owns.
     pub(crate) fn insert(&mut self, batch: &LeafBatch, slab: Slab) -> Result<(), VdbError> {
         // Runs of leaves that are owned: all of them, unless the batch crosses a plane between slabs.
         let mut start = 0;
@@ -31,7 +69,9 @@ impl StoredBand {
                 let nodes = start * LEAF_SIZE..end * LEAF_SIZE;
                 let active = &batch.active[start..end];
                 self.surface.insert_leaves(run, &batch.values[nodes.clone()], active)?;
-                self.closest.insert_leaves(run, &batch.closest[nodes], active)?;
+                if let Some(closest) = &mut self.closest {
+                    closest.insert_leaves(run, &batch.closest[nodes], active)?;
+                }
             }
             start = end;
         }
@@ -48,7 +88,7 @@ impl StoredBand {
     /// The finished band.
     pub(crate) fn finish(mut self) -> Band {
         self.surface.prune();
-        Band { surface: self.surface, closest: Some(self.closest) }
+        Band { surface: self.surface, closest: self.closest }
     }
 }
 

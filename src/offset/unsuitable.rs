@@ -1,14 +1,14 @@
 //! Why an offset cannot be made, told before the work starts where that is possible.
 
 use super::SignMode;
+use super::stored_band::Wanted;
 use crate::band::BandSettings;
 use crate::distance::{SignedDistance, largest_depth};
 use crate::edge::TooManyEdges;
 use crate::geom::aabb::Aabb;
 use crate::mesh::{MeshError, Topology, TriMesh, measure};
-use crate::run::{Cancelled, RunSettings};
+use crate::run::{Bytes, Cancelled, RunSettings};
 use glam::DVec3;
-use crate::run::Bytes;
 
 /// The input is not the boundary of a solid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -124,8 +124,12 @@ fn input_bytes(mesh: &TriMesh) -> u64 {
 /// most 298, and rounded up: too low, and the machine swaps; too high, and work that fits is refused.
 const BYTES_PER_CELL: f64 = 350.0;
 
-/// What the band in OpenVDB adds to that: together it was 557 at most.
-const BYTES_PER_STORED_CELL: f64 = 250.0;
+/// What the level set in OpenVDB adds to that. With a half width of 3 it was 530 together at most (five models in three
+/// distances at 512 voxels).
+const BYTES_PER_STORED_CELL: f64 = 100.0;
+
+/// What the closest triangles in OpenVDB add to both: it was 640 together at most.
+const BYTES_PER_CLOSEST_CELL: f64 = 90.0;
 
 /// The same for each voxel of half-width beyond the first.
 const BYTES_PER_CELL_AND_VOXEL: f64 = 60.0;
@@ -137,13 +141,17 @@ const BYTES_PER_TRIANGLE: f64 = 260.0;
 pub(super) fn check_memory(
     mesh: &TriMesh,
     settings: &BandSettings,
-    keeps_band: bool,
+    stored: Wanted,
     max_memory: Option<u64>,
 ) -> Result<(), MemoryError> {
     let Some(allowed) = max_memory.or_else(available_memory) else { return Ok(()) };
     let area = offset_area(mesh, settings.r);
     let voxel = settings.lattice.voxel;
-    let stored = if keeps_band { BYTES_PER_STORED_CELL } else { 0.0 };
+    let stored = match stored {
+        Wanted::Nothing => 0.0,
+        Wanted::LevelSet => BYTES_PER_STORED_CELL,
+        Wanted::WithClosest => BYTES_PER_STORED_CELL + BYTES_PER_CLOSEST_CELL,
+    };
     let per_cell = BYTES_PER_CELL + stored + (settings.half_width - 1.0) * BYTES_PER_CELL_AND_VOXEL;
     let fixed = input_bytes(mesh) as f64;
     let needed = fixed + area / (voxel * voxel) * per_cell;

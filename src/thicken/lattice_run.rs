@@ -58,6 +58,7 @@ impl Work<'_> {
             half_width: at.thickness / at.voxel + BEYOND,
             // A solid takes more than a mesh of its size.
             keep_band: true,
+            keep_closest: true,
             max_memory: self.settings.max_memory,
             ..OffsetSettings::default()
         };

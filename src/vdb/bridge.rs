@@ -95,8 +95,8 @@ pub(super) mod ffi {
 
         /// An empty level set named `surface` with world = voxel * index.
         fn new_float_grid(voxel: f64, background: f32, creator: &str) -> Result<UniquePtr<FloatGrid>>;
-        /// An empty grid named `closest` with background -1.
-        fn new_int32_grid(voxel: f64, creator: &str) -> Result<UniquePtr<Int32Grid>>;
+        /// An empty grid with background -1.
+        fn new_int32_grid(voxel: f64, name: &str, creator: &str) -> Result<UniquePtr<Int32Grid>>;
 
         /// Adds leaves; one that exists is replaced.
         fn insert(self: Pin<&mut FloatGrid>, origins: &[i32], values: &[f32], active: &[u64]) -> Result<()>;

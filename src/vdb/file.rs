@@ -6,7 +6,7 @@
 
 use super::VdbError;
 use super::bridge::ffi;
-use super::grid::{Band, CREATOR, ClosestGrid, SurfaceGrid};
+use super::grid::{Band, CLOSEST, CREATOR, ClosestGrid, SurfaceGrid};
 use super::stamp;
 use cxx::UniquePtr;
 use std::fs::File;
@@ -67,7 +67,9 @@ pub struct VdbOptions {
     pub metadata: Vec<(String, MetaValue)>,
 }
 
-/// Writes a level set, and the closest triangles with it if wanted, to exactly `path`.
+/// Writes a level set to exactly `path`: one grid, which every OpenVDB program reads. With the closest triangles there are
+/// two, and programs that know no grids of integers refuse the file (some builds of OpenVDB's Python module) or the second
+/// grid.
 ///
 /// An existing file is overwritten in place, and a failure leaves a part of the new one: callers write
 /// to a temporary name and rename.
@@ -133,13 +135,13 @@ pub fn open_surface(path: &Path, name: Option<&str>) -> Result<SurfaceGrid, VdbE
     }
 }
 
-/// Opens the grid of closest triangles `name`; without a name the grid `closest`, or else the only grid of
+/// Opens the grid of closest triangles `name`; without a name the grid `surface_closest`, or else the only grid of
 /// 32-bit integers.
 ///
 /// # Errors
 /// If the file cannot be read or has no such grid.
 pub fn open_closest(path: &Path, name: Option<&str>) -> Result<ClosestGrid, VdbError> {
-    let (number, _) = find(path, name, "closest", "int32")?;
+    let (number, _) = find(path, name, CLOSEST, "int32")?;
     let grid = ffi::read_int32_grid(bytes(path), number).map_err(|e| VdbError::read(path, e))?;
     Ok(ClosestGrid { grid })
 }
@@ -151,7 +153,7 @@ pub fn open_closest(path: &Path, name: Option<&str>) -> Result<ClosestGrid, VdbE
 /// Those of [`open_surface`].
 pub fn open_band(path: &Path) -> Result<Band, VdbError> {
     let surface = open_surface(path, None)?;
-    let closest = match open_closest(path, Some("closest")) {
+    let closest = match open_closest(path, Some(CLOSEST)) {
         Ok(grid) => Some(grid).filter(|c| c.leaf_origins() == surface.leaf_origins()),
         Err(VdbError::MissingGrid { .. }) => None,
         Err(e) => return Err(e),

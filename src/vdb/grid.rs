@@ -7,6 +7,10 @@ use crate::band::{Ijk, LEAF_DIM, Lattice, LeafMask};
 use crate::run::RunSettings;
 use cxx::UniquePtr;
 
+/// The name of the grid of closest triangles. After `surface` in the alphabet: OpenVDB lists the grids of a file by their
+/// names, whatever their order in it, and many programs take the first one.
+pub(super) const CLOSEST: &str = "surface_closest";
+
 /// Who made a grid, as other programs show it.
 pub(super) const CREATOR: &str = concat!("exocarp ", env!("CARGO_PKG_VERSION"));
 
@@ -24,7 +28,7 @@ pub struct SurfaceGrid {
 }
 
 /// Ids of the closest triangles of the nodes of a [`SurfaceGrid`], -1 elsewhere: an `Int32Grid` named
-/// `closest`.
+/// `surface_closest`, which comes after `surface` in lists of a file's grids.
 pub struct ClosestGrid {
     pub(super) grid: UniquePtr<ffi::Int32Grid>,
 }
@@ -33,7 +37,8 @@ pub struct ClosestGrid {
 pub struct Band {
     /// The level set.
     pub surface: SurfaceGrid,
-    /// The closest triangles, leaf by leaf those of the surface. A file from another program has none.
+    /// The closest triangles, leaf by leaf those of the surface, where they were asked for. A file from another program has
+    /// none.
     pub closest: Option<ClosestGrid>,
 }
 
@@ -233,7 +238,7 @@ impl ClosestGrid {
             let reason = "the voxel size must be positive";
             return Err(VdbError::Size { voxel, half_width: 1.0, reason });
         }
-        Ok(ClosestGrid { grid: ffi::new_int32_grid(transform_scale(voxel), CREATOR)? })
+        Ok(ClosestGrid { grid: ffi::new_int32_grid(transform_scale(voxel), CLOSEST, CREATOR)? })
     }
 
     /// Adds leaves: 512 triangle ids each, and the mask of active nodes. A leaf that exists at an origin is
@@ -326,23 +331,18 @@ fn check_range(first: usize, count: usize, leaves: usize) -> Result<(), VdbError
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn the_background_is_never_below_the_half_width() {
         for n in 1..10_000 {
             let voxel = 1.0 / f64::from(n);
-    use proptest::prelude::*;
             for half_width in [1.0, 1.5, 3.0, 4.0] {
                 check_background(voxel, half_width);
             }
         }
     }
 
-    #[test]
-    fn sizes_that_cannot_be_stored_are_refused() {
-        for (voxel, half_width) in
-            [(0.0, 3.0), (-1.0, 3.0), (f64::NAN, 3.0), (1.0, 0.5), (1.0, f64::NAN), (1e-40, 3.0), (1e38, 9.0)]
-        {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
 
@@ -385,6 +385,11 @@ mod tests {
         assert!(f64::from(background) < half_width * voxel * (1.0 + 5e-7), "{what}");
     }
 
+    #[test]
+    fn sizes_that_cannot_be_stored_are_refused() {
+        for (voxel, half_width) in
+            [(0.0, 3.0), (-1.0, 3.0), (f64::NAN, 3.0), (1.0, 0.5), (1.0, f64::NAN), (1e-40, 3.0), (1e38, 9.0)]
+        {
             let error = SurfaceGrid::new(Lattice { voxel }, half_width).unwrap_err();
             assert!(matches!(error, VdbError::Size { .. }), "{error}");
         }

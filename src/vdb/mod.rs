@@ -10,7 +10,8 @@
 //! ```
 //!
 //! phi is in model units, negative inside, and never 0. [`SurfaceGrid::check_level_set`] runs OpenVDB's
-//! own nine tests. A [`ClosestGrid`] of the same leaves holds the ids of the closest triangles.
+//! own nine tests. A [`ClosestGrid`] of the same leaves holds the ids of the closest triangles, where they were asked
+//! for.
 //!
 //! Leaves go in and out in batches, as flat slices; [`write()`] and [`open_surface`] are the files. The
 //! same grids and options give the same bytes.

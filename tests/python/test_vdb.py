@@ -1,9 +1,10 @@
 """Checks a .vdb file of exocarp with Python's OpenVDB, which is independent of exocarp's own reader.
 
-usage: test_vdb.py FILE.vdb (--sphere RADIUS | --nodes FILE) --voxel H --half-width W --active N
+usage: test_vdb.py FILE.vdb (--sphere RADIUS | --nodes FILE) --voxel H --half-width W --active N [--two-grids]
 
 The file holds the level set of a sphere around the world origin, or one whose exact values at some nodes
-are given, a line "i j k phi" each. Exits with an AssertionError that says what is wrong.
+are given, a line "i j k phi" each. It is the only grid unless there are two. Exits with an AssertionError that says
+what is wrong.
 """
 
 import argparse
@@ -38,6 +39,19 @@ def check_header(path, grid, args):
     assert metadata["unit"] == "mm" and metadata["offset_distance"] == 0.5, metadata
     assert metadata["voxel_size"] == args.voxel and metadata["half_width"] == args.half_width, metadata
     assert metadata["creator"].startswith("exocarp"), metadata
+
+
+def read_surface(path, two_grids):
+    """The level set, by way of all that the file holds. The module knows no grids of integers: with one in the file it
+    finds the level set by its name only."""
+    if two_grids:
+        return vdb.read(path, "surface")
+    names = [grid.name for grid in vdb.readAllGridMetadata(path)]
+    assert names == ["surface"], names
+    grids, metadata = vdb.readAll(path)
+    assert [grid.name for grid in grids] == ["surface"], grids
+    assert metadata["creator"].startswith("exocarp"), metadata
+    return grids[0]
 
 
 def check_band(grid):
@@ -94,10 +108,10 @@ def main():
     parser.add_argument("--voxel", type=float, required=True)
     parser.add_argument("--half-width", type=float, required=True)
     parser.add_argument("--active", type=int, required=True)
+    parser.add_argument("--two-grids", action="store_true")
     args = parser.parse_args()
 
-    # Not readAll: most builds of the module know no grids of 32-bit integers.
-    surface = vdb.read(args.file, "surface")
+    surface = read_surface(args.file, args.two_grids)
     check_header(args.file, surface, args)
     check_band(surface)
     given = nodes_of(args.nodes) if args.nodes else random_nodes(surface, args.sphere, args.voxel)

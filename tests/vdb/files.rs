@@ -116,7 +116,7 @@ fn a_file_says_what_it_holds() {
 
     let [surface, closest] = &file.grids[..] else { panic!("{file:?}") };
     assert_eq!((surface.name.as_str(), surface.value_type.as_str()), ("surface", "float"));
-    assert_eq!((closest.name.as_str(), closest.value_type.as_str()), ("closest", "int32"));
+    assert_eq!((closest.name.as_str(), closest.value_type.as_str()), ("surface_closest", "int32"));
     assert_eq!((surface.class.as_str(), surface.background.as_str()), ("level set", "0.3"));
     assert_eq!(surface.active_voxels, SPHERE.band().surface.active_voxels());
     assert_eq!(surface.active_voxels, closest.active_voxels);
@@ -150,10 +150,10 @@ fn a_missing_grid_is_named_with_those_that_exist() {
     write_sphere(&path, &options());
     let shown = path.display();
     let error = open_surface(&path, Some("density")).unwrap_err().to_string();
-    let present = "it holds 'surface' (float), 'closest' (int32)";
+    let present = "it holds 'surface' (float), 'surface_closest' (int32)";
     assert_eq!(error, format!("{shown} has no float grid named 'density'; {present}"));
-    let error = open_surface(&path, Some("closest")).unwrap_err().to_string();
-    assert_eq!(error, format!("{shown} has no float grid named 'closest'; {present}"));
+    let error = open_surface(&path, Some("surface_closest")).unwrap_err().to_string();
+    assert_eq!(error, format!("{shown} has no float grid named 'surface_closest'; {present}"));
 }
 
 #[test]

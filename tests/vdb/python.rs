@@ -1,7 +1,7 @@
 //! The files as Python's OpenVDB sees them.
 
 use crate::sphere::{Sphere, read_out};
-use exocarp::vdb::{Band, ClosestGrid, VdbError, VdbOptions, info, open_surface, write};
+use exocarp::vdb::{Band, ClosestGrid, Compression, VdbError, VdbOptions, info, open_surface, write};
 use std::path::Path;
 use std::process::Command;
 
@@ -37,13 +37,19 @@ fn python_reads_the_same_level_set() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("sphere.vdb");
     let band = SPHERE.band();
-    let options = VdbOptions { distance: Some(0.5), unit: Some("mm".into()), ..VdbOptions::default() };
-    write(&path, &band.surface, band.closest.as_ref(), &options).unwrap();
     let active = band.surface.active_voxels().to_string();
     let sphere = ["--sphere", "2.01", "--voxel", "0.1", "--half-width", "3", "--active", &active];
-    let arguments = [&[path.to_str().unwrap()], &sphere[..]].concat();
-    if let Some(said) = run("python_reads_the_same_level_set", "test_vdb.py", &arguments) {
-        assert!(said.contains("1000 random nodes"), "{said}");
+    // Alone in its file, which the module reads as a whole; and beside the closest triangles.
+    for (closest, more) in [(None, &[][..]), (band.closest.as_ref(), &["--two-grids"])] {
+        for compression in [Compression::Blosc, Compression::Zip, Compression::None] {
+            let (distance, unit) = (Some(0.5), Some("mm".into()));
+            let options = VdbOptions { compression, distance, unit, ..VdbOptions::default() };
+            write(&path, &band.surface, closest, &options).unwrap();
+            let arguments = [&[path.to_str().unwrap()], &sphere[..], more].concat();
+            if let Some(said) = run("python_reads_the_same_level_set", "test_vdb.py", &arguments) {
+                assert!(said.contains("1000 random nodes"), "{said}");
+            }
+        }
     }
 }
 

@@ -43,9 +43,7 @@ fn files_of_another_format() {
     assert!(says(Format::Ply, b"OFF\n3 1 0\n").contains("line 1: this is not PLY (it begins with \"OFF\""));
     assert!(says(Format::Stl, b"ply\nformat").contains("this is not STL (it begins with \"ply\\nformat\""));
     let obj = written(&tetrahedron(), Format::Obj, Coordinates::F32).repeat(2);
-    assert!(
-        says(Format::Stl, &obj).contains("this is not STL (it begins with \"v 0 -0 0.3333333432674408")
-    );
+    assert!(says(Format::Stl, &obj).contains("this is not STL (it begins with \"v 0 -0 0.3333333432674408"));
     assert!(says(Format::Off, b"solid x\n").contains("line 1: this is not OFF (it begins with \"solid\""));
     assert!(
         says(Format::Off, &written(&tetrahedron(), Format::Stl, Coordinates::F32))
