@@ -11,12 +11,12 @@ use super::shape::{self, Face, Moving, Rounds, Shaped};
 use super::solid::Solid;
 use super::stitch::{self, Stitched};
 use super::unsuitable::Blocked;
-use super::{ThickenError, ThickenSettings, ThickenTimes, closed};
+use super::{ThickenError, ThickenSettings, ThickenTimes, closed, memory};
 use crate::distance::SignedDistance;
 use crate::error::Error;
 use crate::lattice::Lattice;
 use crate::mesh::{Topology, TriMesh};
-use crate::offset::{Length, OffsetSettings, VoxelSize, check_memory};
+use crate::offset::MemoryError;
 use crate::run::{Phase, RunSettings};
 use glam::DVec3;
 use std::time::Instant;
@@ -50,19 +50,17 @@ pub(super) struct Surface<'a> {
 
 impl Work<'_> {
     /// Checks that a lattice fits into the memory that the settings allow.
-    pub fn check_memory(&self, patch: &TriMesh, at: Resolved) -> Result<(), Error> {
-        // The band lies around the patch, and reaches as far as the shell.
-        let band = OffsetSettings {
-            distance: Length::Units(0.0),
-            voxel: VoxelSize::Units(at.voxel),
-            half_width: at.thickness / at.voxel + BEYOND,
-            // A solid takes more than a mesh of its size.
-            keep_band: true,
-            keep_closest: true,
-            max_memory: self.settings.max_memory,
-            ..OffsetSettings::default()
-        };
-        check_memory(patch, &band)
+    pub fn check_memory(
+        &self,
+        patch: &TriMesh,
+        boundary: &Boundary,
+        at: Resolved,
+    ) -> Result<(), MemoryError> {
+        // A closed patch's solid is made of an offset, which checks that itself.
+        if boundary.is_empty() && self.settings.map.is_none() {
+            return Ok(());
+        }
+        memory::check(patch, boundary, at, self.settings.max_memory)
     }
 
     /// The solid on one side of `surface`, whose triangles are its first ones.

@@ -20,6 +20,7 @@ mod fit;
 mod holes;
 mod lattice_run;
 mod lids;
+mod memory;
 mod near_nodes;
 mod nodes;
 mod open_mesh;
@@ -86,7 +87,7 @@ pub fn thicken(
     let holes = Holes::new(&patch, &topology, &boundary);
     let mut work = Work { settings, run, times: ThickenTimes::default(), shaped: Shaped::default() };
     work.times.hierarchy = started.elapsed().as_secs_f64();
-    work.check_memory(&patch, resolved)?;
+    work.check_memory(&patch, &boundary, resolved)?;
     let (mut halvings, mut at) = (0, resolved);
     let mut closed = holes.unseen(at.voxel);
     let (mesh, capped) = loop {
@@ -104,7 +105,7 @@ pub fn thicken(
             continue;
         }
         let finer = Resolved { voxel: 0.5 * at.voxel, ..at };
-        if halvings == settings.halvings || work.check_memory(&patch, finer).is_err() {
+        if halvings == settings.halvings || work.check_memory(&patch, &boundary, finer).is_err() {
             return Err(ThickenError::Obstacle { obstacle, at: place, voxel: at.voxel }.into());
         }
         halvings += 1;
