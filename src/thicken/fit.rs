@@ -89,6 +89,9 @@ impl Around<'_> {
                 let strip = TriMesh { vertices: self.mesh.vertices.clone(), triangles };
                 bad = costlier_of_pairs(&strip, &steps, ribbons, run)?;
                 if bad.is_empty() {
+                    bad = costliest_at_edges(&strip.triangles, &steps, ribbons);
+                }
+                if bad.is_empty() {
                     return Ok(Ok(strip.triangles));
                 }
             }
@@ -137,6 +140,24 @@ impl Around<'_> {
         };
         Conflict { rim, section, at: self.mesh.vertices[triangle[2] as usize], ribbon: Some(number) }
     }
+}
+
+/// Of the triangles of the strip at each edge that more than two of them have, the costliest one. A loop that comes through a
+/// vertex twice can lead to that: triangles that share an edge need not meet anywhere else.
+fn costliest_at_edges(
+    triangles: &[[u32; 3]],
+    steps: &[(usize, Step)],
+    ribbons: &[Ribbon],
+) -> Vec<(usize, Step)> {
+    let sides = |n: usize| [[0, 1], [1, 2], [2, 0]].map(|side| side.map(|k: usize| triangles[n][k]));
+    let mut edges: Vec<([u32; 2], usize)> =
+        (0..triangles.len()).flat_map(|n| sides(n).map(|[a, b]| ([a.min(b), a.max(b)], n))).collect();
+    edges.sort_unstable();
+    let cost = |n: usize| ribbons[steps[n].0].cost_of(steps[n].1);
+    let crowded = edges.chunk_by(|a, b| a.0 == b.0).filter(|at_edge| at_edge.len() > 2);
+    let costliest = crowded
+        .filter_map(|at_edge| at_edge.iter().map(|&(_, n)| n).max_by(|&a, &b| cost(a).total_cmp(&cost(b))));
+    costliest.map(|n| steps[n]).collect()
 }
 
 /// Of each two triangles of the strip that meet the costlier one.

@@ -47,6 +47,14 @@ pub(super) struct Ribbon {
     pub forbidden: BTreeSet<Step>,
 }
 
+/// The cheapest way to a rung.
+#[derive(Clone, Copy, Debug)]
+struct Way {
+    cost: f64,
+    /// The last step, and what of [`TURNED`] was done before it; `None` at the start.
+    last: Option<(Step, usize)>,
+}
+
 /// What the square of a rung's length counts beside a triangle's area. On a flat wall all strips have the same area, and
 /// the one with the shortest rungs has the best triangles; much more, and it would not follow the wall's bends.
 const RUNG: f64 = 0.2;
@@ -54,9 +62,79 @@ const RUNG: f64 = 0.2;
 /// What a fold counts, beside the area of the triangles at it: more than any detour.
 const FOLD: f64 = 30.0;
 
+/// What a path must have done before its end, a bit each: a step along the boundary from a rung to another vertex of the rim
+/// than its first one, and the other way round. One that has not has all steps along the rim at a single vertex of the boundary,
+/// or the other way round, and comes to the first rung there once more at the end: four triangles at one edge.
+const TURNED: usize = 0b11;
+
 impl Ribbon {
-    /// The cheapest strip; `None` when there is none.
+    /// The cheapest strip that takes no rung twice; `None` when there is none.
     pub fn cheapest(&self) -> Option<Vec<Step>> {
+        let path = self.cheapest_path()?;
+        let done = path.iter().fold(0, |done, &step| done | self.turns(step));
+        if done == TURNED { Some(path) } else { self.cheapest_turning() }
+    }
+
+    /// The bits of [`TURNED`] that a step sets.
+    fn turns(&self, step: Step) -> usize {
+        let is_inner = |side: &Side, k: u32| (1..side.points.len() - 1).contains(&(k as usize));
+        match step {
+            Step::Boundary(_, j) => usize::from(is_inner(&self.rim, j)),
+            Step::Rim(i, _) => usize::from(is_inner(&self.boundary, i)) << 1,
+        }
+    }
+
+    /// The cheapest path among those that turn. It takes four times as long, and is seldom needed: where the boundary is small
+    /// beside the rim's edges, or the rim beside the boundary's.
+    fn cheapest_turning(&self) -> Option<Vec<Step>> {
+        let (n, m) = (self.boundary.points.len() as u32, self.rim.points.len() as u32);
+        let rows = self.rows();
+        // Per rung and what was done before it: the least cost, the last step, and what was done before that.
+        let mut best: Vec<Vec<[Option<Way>; TURNED + 1]>> = Vec::with_capacity(rows.len());
+        for (i, &[low, high]) in (0..n).zip(&rows) {
+            best.push(vec![[None; TURNED + 1]; high + 1 - low]);
+            for j in low as u32..=high as u32 {
+                let along = i.checked_sub(1).map(|i| (i, j, Step::Boundary(i, j)));
+                let across = j.checked_sub(1).map(|j| (i, j, Step::Rim(i, j)));
+                let mut ways = [None; TURNED + 1];
+                if (i, j) == (0, 0) {
+                    ways[0] = Some(Way { cost: 0.0, last: None });
+                }
+                for (i, j, step) in along.into_iter().chain(across) {
+                    let column = (j as usize).checked_sub(rows[i as usize][0]);
+                    let Some(before) = column.and_then(|j| best[i as usize].get(j)).copied() else {
+                        continue;
+                    };
+                    let cost = self.cost(step);
+                    for (done, way) in before.into_iter().enumerate() {
+                        let Some(way) = way.filter(|way| (way.cost + cost).is_finite()) else { continue };
+                        let to: &mut Option<Way> = &mut ways[done | self.turns(step)];
+                        if to.is_none_or(|other| way.cost + cost < other.cost) {
+                            *to = Some(Way { cost: way.cost + cost, last: Some((step, done)) });
+                        }
+                    }
+                }
+                best[i as usize][j as usize - low] = ways;
+            }
+        }
+        let mut steps = Vec::with_capacity((n + m) as usize);
+        let (mut i, mut j, mut done) = (n as usize - 1, m as usize - 1, TURNED);
+        loop {
+            let way = best[i].get(j.checked_sub(rows[i][0])?)?[done]?;
+            let Some((step, before)) = way.last else { break };
+            steps.push(step);
+            done = before;
+            match step {
+                Step::Boundary(..) => i -= 1,
+                Step::Rim(..) => j -= 1,
+            }
+        }
+        steps.reverse();
+        Some(steps)
+    }
+
+    /// The cheapest path; `None` when there is none.
+    fn cheapest_path(&self) -> Option<Vec<Step>> {
         let (n, m) = (self.boundary.points.len(), self.rim.points.len());
         let rows = self.rows();
         let width = |i: usize| (rows[i][1] + 1).saturating_sub(rows[i][0]);
@@ -234,6 +312,28 @@ mod tests {
                 let [a, b, c] = ribbon.points(step);
                 let middle = (a + b + c) / 3.0;
                 assert!((b - a).cross(c - a).dot(middle.with_z(0.0)) > 0.0, "{n} {m} {step:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_rung_is_taken_twice_however_small_one_side_is() {
+        for (n, m, small) in [(28, 7, 1e-3), (3, 3, 1e-6), (5, 40, 0.0), (40, 5, 0.01)] {
+            for boundary_is_small in [true, false] {
+                let mut ribbon = circles(n, m);
+                let side = if boundary_is_small { &mut ribbon.boundary } else { &mut ribbon.rim };
+                let middle = DVec3::new(0.9, 0.1, 0.0);
+                side.points.iter_mut().for_each(|p| *p = middle + small * (*p - middle));
+                // Anything is in reach of a side that is next to nothing.
+                ribbon.reach = std::f64::consts::TAU;
+                let steps = ribbon.cheapest().unwrap();
+                assert_eq!(steps.len(), n + m);
+                let ends = steps.iter().map(|step| match *step {
+                    Step::Boundary(i, j) => [i as usize + 1, j as usize],
+                    Step::Rim(i, j) => [i as usize, j as usize + 1],
+                });
+                let rungs: BTreeSet<[usize; 2]> = ends.map(|[i, j]| [i % n, j % m]).collect();
+                assert_eq!(rungs.len(), n + m, "{n} {m} {small}");
             }
         }
     }

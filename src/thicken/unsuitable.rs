@@ -60,7 +60,7 @@ pub enum ThickenError {
     /// The lattice is too coarse for a place of the patch, also after all halvings.
     #[error(
         "the solid cannot be closed near {}: {obstacle}, with voxel size {voxel:.6}; choose a \
-         smaller voxel size, or mend the patch there", Point(*.at)
+         smaller voxel size or thickness, or mend the patch there", Point(*.at)
     )]
     Obstacle {
         /// What is in the way.

@@ -12,6 +12,14 @@ use std::collections::BTreeSet;
 pub fn check(patch: &TriMesh, settings: &ThickenSettings) -> ThickenResult {
     let run = RunSettings::with_threads(2).unwrap();
     let result = thicken(patch, settings, &run).unwrap();
+    audit(patch, settings, &result);
+    result
+}
+
+/// Checks everything that is promised of a result.
+#[track_caller]
+pub fn audit(patch: &TriMesh, settings: &ThickenSettings, result: &ThickenResult) {
+    let run = RunSettings::with_threads(2).unwrap();
     let report = soundness(&result.mesh, &run).unwrap();
     assert!(report.broken().is_empty(), "{:?}", report.broken());
     let there: BTreeSet<_> = (0..result.mesh.triangles.len()).map(|t| corners(&result.mesh, t)).collect();
@@ -24,7 +32,6 @@ pub fn check(patch: &TriMesh, settings: &ThickenSettings) -> ThickenResult {
         assert!(there.contains(&corners(&turned, t)), "triangle {t} is lost");
     }
     assert!(signed_volume(&result.mesh) > 0.0);
-    result
 }
 
 /// The bits of a triangle's corners, in its direction, from the least one on.
