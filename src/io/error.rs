@@ -64,6 +64,12 @@ pub enum Problem {
     /// The file cannot be opened.
     #[error("the file cannot be opened ({0}); check the path and the permissions")]
     Open(std::io::Error),
+    /// The path names something else than a file: a pipe, a device.
+    #[error("this is a pipe or a device; save what comes from it as a file and name that")]
+    NotAFile,
+    /// The path is the usual name of standard input.
+    #[error("standard input is not read; save the model as a file and name that")]
+    StandardInput,
     /// Reading failed.
     #[error("reading failed ({0}); check the disk or copy the file again")]
     Read(std::io::Error),

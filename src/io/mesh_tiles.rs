@@ -4,7 +4,7 @@
 //! of the whole; after them those vertices of other tiles that its triangles need. No two vertices of the whole are at
 //! one position, so a vertex is known by that.
 
-use super::error::{SaveError, SaveProblem};
+use super::error::{Problem, SaveError, SaveProblem};
 use super::tile::{MergeError, MergeProblem, Tile, check_complete};
 use super::{Coordinates, Format, ply, stl};
 use crate::mesh::TriMesh;
@@ -105,7 +105,11 @@ impl TileFile {
     fn open(path: &Path) -> Result<TileFile, MergeError> {
         let at = |problem| MergeError { path: path.to_path_buf(), problem };
         let format = Format::of(path).map_err(|_| at(MergeProblem::NotATile))?;
-        let mut file = BufReader::new(File::open(path).map_err(|e| at(MergeProblem::Read(e)))?);
+        let file = super::open(path).map_err(|problem| match problem {
+            Problem::Open(e) => at(MergeProblem::Read(e)),
+            _ => at(MergeProblem::NotATile),
+        })?;
+        let mut file = BufReader::new(file);
         let opened = match format {
             Format::Ply => Self::ply(path, &mut file),
             Format::Stl => Self::stl(path, &mut file),

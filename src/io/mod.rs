@@ -7,12 +7,17 @@
 //! | STL | binary and ascii, several solids | binary |
 //! | OFF | also `COFF`, `NOFF`, `STOFF`; comments; counts on the first line; without keyword | text |
 //!
-//! [`load`] returns the mesh *as it stands in the file*: vertices and triangles in the file's order,
-//! nothing welded, nothing dropped; [`clean`](crate::mesh::clean) is the next step. Polygons are
-//! triangulated: quads along the shorter diagonal that leaves two triangles of like orientation, larger ones
-//! by cutting ears, so that concave faces do not fold. Files are streamed: beside the mesh there is a fixed
-//! buffer, except for OBJ, where the parser holds about 100 bytes for each vertex and face until the end of
-//! the file.
+//! [`load`] returns the mesh *as it stands in the file*: vertices and triangles in the file's order, nothing
+//! welded, nothing dropped but what is not finite; [`clean`](crate::mesh::clean) is the next step. Text may
+//! have the line ends of any system and a byte order mark. Polygons are triangulated: quads along the shorter
+//! diagonal that leaves two triangles of like orientation, larger ones by cutting ears, so that concave faces
+//! do not fold. Files are streamed: beside the mesh there is a fixed buffer, except for OBJ, where the parser
+//! holds about 100 bytes for each vertex and face until the end of the file.
+//!
+//! Where a file is wrong but leaves no doubt of the mesh, it is read, and [`load_with_notes`] says what was
+//! passed over: vertices with a coordinate that is not finite (left out, with the faces that have them), a
+//! number of triangles in binary STL that does not fit the file's size, lines in a PLY header that begin with
+//! no keyword.
 //!
 //! # Promises
 //! - No file makes [`load`] panic, and no header makes it allocate more than the file's size justifies:
@@ -26,6 +31,7 @@
 
 pub(crate) mod atomic;
 mod error;
+mod loaded;
 mod mesh_tiles;
 mod obj;
 mod off;
@@ -43,13 +49,14 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 pub use error::{LoadError, Place, Problem, SaveError, SaveProblem, UnknownFormat};
-
+pub use loaded::{Loaded, Note, Passed};
 pub use mesh_tiles::{merge_tiles, save_tile};
 pub use stream::MeshStream;
 pub use tile::{MergeError, MergeProblem, Tile};
 
 use crate::mesh::TriMesh;
 use error::Fault;
+use loaded::Content;
 
 /// A mesh file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -128,21 +135,34 @@ pub struct SaveOptions {
     pub coordinates: Coordinates,
 }
 
-/// Loads the mesh in the file `path`, unchanged but for polygons, which are triangulated.
+/// Loads the mesh in the file `path`, unchanged but for polygons, which are triangulated, and for vertices
+/// that are not finite, which are left out with the faces that have them. [`load_with_notes`] also says of
+/// what was left out.
 ///
 /// # Errors
 /// When the extension is unknown, or the file is missing, empty, cut off, of another format or broken, has
-/// a coordinate that is not finite, a vertex number out of range, or no triangles.
+/// a vertex number out of range, or no triangles with finite coordinates.
 pub fn load(path: &Path) -> Result<TriMesh, LoadError> {
+    load_with_notes(path).map(|loaded| loaded.mesh)
+}
+
+/// The same, with what was passed over to read the file.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with_notes(path: &Path) -> Result<Loaded, LoadError> {
     let at = |format, fault: Fault| LoadError {
         path: path.to_path_buf(),
         format,
         place: fault.place,
         problem: fault.problem,
     };
+    if path == Path::new("-") {
+        return Err(at(None, Problem::StandardInput.into()));
+    }
     let format = Format::of(path).map_err(|e| at(None, Problem::Extension(e).into()))?;
-    let file = open(path).map_err(|e| at(Some(format), Problem::Open(e).into()))?;
-    read(file, format).map_err(|fault| at(Some(format), fault))
+    let file = open(path).map_err(|problem| at(Some(format), problem.into()))?;
+    read(file, format).and_then(|content| content.finish(path)).map_err(|fault| at(Some(format), fault))
 }
 
 /// The numbers that the vertices of the PLY file `path` have under `name`, in the order of the file; `None` where no
@@ -151,24 +171,26 @@ pub fn load(path: &Path) -> Result<TriMesh, LoadError> {
 /// # Errors
 /// As [`load`], and when the file is of another format.
 pub fn vertex_property(path: &Path, name: &str) -> Result<Option<Vec<f64>>, LoadError> {
-    // Also finds what is wrong with the file.
-    load(path)?;
     let at = |fault: Fault| LoadError {
         path: path.to_path_buf(),
         format: Some(Format::Ply),
         place: fault.place,
         problem: fault.problem,
     };
-    let file = open(path).map_err(|e| at(Problem::Open(e).into()))?;
-    ply::vertex_property(file, name).map_err(at)
+    let mut file = open(path).map_err(|problem| at(problem.into()))?;
+    length(&mut file).and_then(|length| ply::vertex_property(file, length, name)).map_err(at)
 }
 
-fn open(path: &Path) -> std::io::Result<File> {
-    let file = File::open(path)?;
-    match file.metadata()?.is_dir() {
-        true => Err(std::io::ErrorKind::IsADirectory.into()),
-        false => Ok(file),
+/// Opens a file for reading; nothing else, as opening a pipe would wait for who writes to it.
+fn open(path: &Path) -> Result<File, Problem> {
+    let kind = std::fs::metadata(path).map_err(Problem::Open)?.file_type();
+    if kind.is_dir() {
+        return Err(Problem::Open(std::io::ErrorKind::IsADirectory.into()));
     }
+    if !kind.is_file() {
+        return Err(Problem::NotAFile);
+    }
+    File::open(path).map_err(Problem::Open)
 }
 
 /// Saves `mesh` in the file `path`, in the format that belongs to the extension. An existing file is
@@ -207,22 +229,21 @@ impl TriMesh {
 }
 
 /// Reads a mesh of the given format from the beginning of `source`.
-fn read<R: Read + Seek>(mut source: R, format: Format) -> Result<TriMesh, Fault> {
+fn read<R: Read + Seek>(mut source: R, format: Format) -> Result<Content, Fault> {
+    let length = length(&mut source)?;
+    match format {
+        Format::Obj => obj::read(source),
+        Format::Ply => ply::read(source, length),
+        Format::Stl => stl::read(source, length),
+        Format::Off => off::read(source, length),
+    }
+}
+
+/// The bytes of a file that has some. It is at its beginning afterwards.
+fn length(source: &mut impl Seek) -> Result<u64, Fault> {
     let length = source.seek(SeekFrom::End(0))?;
     source.rewind()?;
-    if length == 0 {
-        return Err(Problem::Empty.into());
-    }
-    let mesh = match format {
-        Format::Obj => obj::read(source)?,
-        Format::Ply => ply::read(source, length)?,
-        Format::Stl => stl::read(source, length)?,
-        Format::Off => off::read(source, length)?,
-    };
-    match mesh.triangles.is_empty() {
-        true => Err(Problem::NoTriangles.into()),
-        false => Ok(mesh),
-    }
+    if length == 0 { Err(Problem::Empty.into()) } else { Ok(length) }
 }
 
 /// Refuses, before the first byte is written, what would make a file that no one can read.

@@ -8,13 +8,14 @@
 use std::io::{BufRead, BufReader, Read, Seek, Write};
 
 use super::error::{Fault, Problem, quote};
+use super::loaded::{Content, NonFinite};
 use super::polygon::PolygonMesh;
-use super::text::{Text, parse, write_number};
+use super::text::{Text, is_not_finite, parse, write_number};
 use super::{Coordinates, Format};
 use crate::mesh::TriMesh;
 
 /// Reads a mesh.
-pub(super) fn read<R: Read + Seek>(source: R) -> Result<TriMesh, Fault> {
+pub(super) fn read<R: Read + Seek>(source: R) -> Result<Content, Fault> {
     let mut filter = Filter::new(BufReader::with_capacity(1 << 16, source));
     let options = tobj::LoadOptions {
         single_index: false,
@@ -43,10 +44,9 @@ pub(super) fn read<R: Read + Seek>(source: R) -> Result<TriMesh, Fault> {
     if mesh.vertices.len() > u32::MAX as usize {
         return Err(Problem::TooManyVertices.into());
     }
-    match mesh.vertices.iter().all(|v| v.iter().all(|x| x.is_finite())) {
-        true => Ok(mesh.finish()),
-        false => Err(filter.find_non_finite()?),
-    }
+    let is_finite = mesh.vertices.iter().all(|v| v.iter().all(|x| x.is_finite()));
+    let non_finite = if is_finite { None } else { Some(filter.find_non_finite()?) };
+    Ok(Content { mesh, non_finite, passed: Vec::new() })
 }
 
 /// The lines that `tobj` gets to see.
@@ -79,8 +79,9 @@ impl<R: BufRead> Filter<R> {
         if !self.text.next_line()? {
             return Ok(None);
         }
-        while self.text.line().last() == Some(&b'\\') {
-            self.text.shorten();
+        // Blanks behind the backslash cannot be seen in an editor.
+        while let Some(before) = self.text.line().trim_ascii_end().strip_suffix(b"\\") {
+            self.text.shorten(before.len());
             if !self.text.append_line()? {
                 break;
             }
@@ -104,7 +105,7 @@ impl<R: BufRead> Filter<R> {
                 Some(Statement::Vertex) => {
                     // A fourth number is a weight for rational curves; colours may follow.
                     self.output.push(b'v');
-                    self.copy_words(3, |word| word);
+                    self.copy_words(3, |word| if is_not_finite(word) { b"nan" } else { word });
                     self.output.extend_from_slice(b"\nf -1\n");
                 }
                 Some(Statement::Face) => {
@@ -208,19 +209,21 @@ impl<R: BufRead + Seek> Filter<R> {
         Ok(Problem::truncated("the vertices that its faces name").into())
     }
 
-    /// The first vertex with a coordinate that is not finite.
-    fn find_non_finite(&mut self) -> Result<Fault, Fault> {
+    /// The first coordinate that is not finite.
+    fn find_non_finite(&mut self) -> Result<NonFinite, Fault> {
         self.text.rewind()?;
         while let Some(statement) = self.next_statement()? {
             if statement == Statement::Vertex {
                 for _ in 0..3 {
-                    if let Err(fault) = self.text.coordinate("a vertex \"v x y z\"") {
-                        return Ok(fault);
-                    }
+                    self.text.coordinate("a vertex \"v x y z\"")?;
+                }
+                if let Some(found) = self.text.take_non_finite() {
+                    return Ok(found);
                 }
             }
         }
-        Ok(Problem::NonFinite(quote(b"?")).into())
+        // The file changed while it was read.
+        Err(Problem::truncated("the coordinate that is not finite").into())
     }
 }
 

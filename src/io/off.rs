@@ -6,6 +6,7 @@
 use std::io::{BufReader, Read, Write};
 
 use super::error::{Fault, Problem, quote};
+use super::loaded::Content;
 use super::polygon::PolygonMesh;
 use super::text::{Text, write_number};
 use super::{Coordinates, Format};
@@ -17,7 +18,7 @@ const SHORTEST_VERTEX: u64 = 6;
 const SHORTEST_FACE: u64 = 2;
 
 /// Reads a mesh from a file of `length` bytes.
-pub(super) fn read<R: Read>(source: R, length: u64) -> Result<TriMesh, Fault> {
+pub(super) fn read<R: Read>(source: R, length: u64) -> Result<Content, Fault> {
     let reader = BufReader::with_capacity(1 << 16, source);
     let mut text = Text::new(reader, Format::Off, 0).with_comments(b'#');
     let [vertices, faces] = read_header(&mut text)?;
@@ -42,7 +43,7 @@ pub(super) fn read<R: Read>(source: R, length: u64) -> Result<TriMesh, Fault> {
         text.skip_rest_of_line();
         mesh.push(&corners);
     }
-    Ok(mesh.finish())
+    Ok(Content { mesh, non_finite: text.take_non_finite(), passed: Vec::new() })
 }
 
 /// Reads the keyword and the numbers of vertices and faces.

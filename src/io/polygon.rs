@@ -52,23 +52,65 @@ impl PolygonMesh {
         }
     }
 
+    /// Drops the vertices with a coordinate that is not finite, and appends their numbers to `gone`; and the
+    /// faces that have one of them, and returns how many.
+    pub(super) fn drop_non_finite(&mut self, gone: &mut Vec<u32>) -> usize {
+        /// The number of a vertex that is dropped. No mesh has as many.
+        const GONE: u32 = u32::MAX;
+        let mut numbers = Vec::with_capacity(self.vertices.len());
+        let mut next = 0;
+        for (v, position) in (0..).zip(&self.vertices) {
+            let is_finite = position.iter().all(|x| x.is_finite());
+            numbers.push(if is_finite { next } else { GONE });
+            match is_finite {
+                true => next += 1,
+                false => gone.push(v),
+            }
+        }
+        let old = std::mem::take(self);
+        let (mut faces, mut kept) = (0, Vec::new());
+        let mut keep = |corners: &[u32]| {
+            kept.clear();
+            kept.extend(corners.iter().map(|&v| numbers[v as usize]));
+            match kept.contains(&GONE) {
+                true => faces += 1,
+                false => self.push(&kept),
+            }
+        };
+        let mut done = 0;
+        for (i, polygon) in old.polygons.iter().enumerate() {
+            old.triangles[done..polygon.position].iter().for_each(|t| keep(t));
+            done = polygon.position;
+            keep(old.polygon(i));
+        }
+        old.triangles[done..].iter().for_each(|t| keep(t));
+        self.vertices = old.vertices;
+        self.vertices.retain(|position| position.iter().all(|x| x.is_finite()));
+        faces
+    }
+
+    /// The corners of a polygon.
+    fn polygon(&self, i: usize) -> &[u32] {
+        let end = self.polygons.get(i + 1).map_or(self.corners.len(), |next| next.first);
+        &self.corners[self.polygons[i].first..end]
+    }
+
     /// The mesh, with all polygons triangulated. Every corner must be a vertex.
     pub(super) fn finish(self) -> TriMesh {
-        let PolygonMesh { vertices, triangles, polygons, corners } = self;
-        if polygons.is_empty() {
-            return TriMesh { vertices, triangles };
+        if self.polygons.is_empty() {
+            return TriMesh { vertices: self.vertices, triangles: self.triangles };
         }
         // A polygon of n corners makes n - 2 triangles.
-        let mut all = Vec::with_capacity(triangles.len() + corners.len() - 2 * polygons.len());
+        let count = self.triangles.len() + self.corners.len() - 2 * self.polygons.len();
+        let mut all = Vec::with_capacity(count);
         let mut done = 0;
-        for (i, polygon) in polygons.iter().enumerate() {
-            all.extend_from_slice(&triangles[done..polygon.position]);
+        for (i, polygon) in self.polygons.iter().enumerate() {
+            all.extend_from_slice(&self.triangles[done..polygon.position]);
             done = polygon.position;
-            let end = polygons.get(i + 1).map_or(corners.len(), |next| next.first);
-            triangulate(&corners[polygon.first..end], &vertices, &mut all);
+            triangulate(self.polygon(i), &self.vertices, &mut all);
         }
-        all.extend_from_slice(&triangles[done..]);
-        TriMesh { vertices, triangles: all }
+        all.extend_from_slice(&self.triangles[done..]);
+        TriMesh { vertices: self.vertices, triangles: all }
     }
 }
 

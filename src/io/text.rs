@@ -1,16 +1,22 @@
 //! Text files as lines and words, with line numbers for messages; and numbers as text.
 
-use std::io::{BufRead, Read, Seek, SeekFrom, Write};
+use std::io::{BufRead, ErrorKind, Seek, SeekFrom, Write};
 use std::ops::Range;
 
+use memchr::memchr2;
+
 use super::Format;
-use super::error::{Fault, Problem, quote};
+use super::error::{Fault, Place, Problem, quote};
+use super::loaded::NonFinite;
 
 /// The longest line that is read. Polygons of a million corners fit; a binary file without line ends
 /// does not get to fill the memory.
-const LONGEST_LINE: u64 = 1 << 26;
+const LONGEST_LINE: usize = 1 << 26;
 
-/// Reads a text file line by line and a line word by word. Lines end with LF or CRLF; a byte order mark
+/// What some programs write before the first character of UTF-8 text.
+pub(super) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// Reads a text file line by line and a line word by word. Lines end with LF, CRLF or CR; a byte order mark
 /// is skipped.
 pub(super) struct Text<R> {
     reader: R,
@@ -21,12 +27,14 @@ pub(super) struct Text<R> {
     next: usize,
     /// Begins a comment that ends with the line.
     comment: Option<u8>,
+    /// The first coordinate that is not finite.
+    non_finite: Option<NonFinite>,
 }
 
 impl<R: BufRead> Text<R> {
     /// Reads `reader`, whose next line is the one after `number`.
     pub(super) fn new(reader: R, format: Format, number: u64) -> Self {
-        Text { reader, format, line: Vec::new(), number, next: 0, comment: None }
+        Text { reader, format, line: Vec::new(), number, next: 0, comment: None, non_finite: None }
     }
 
     /// Skips everything from `mark` to the end of its line.
@@ -45,10 +53,9 @@ impl<R: BufRead> Text<R> {
     pub(super) fn append_line(&mut self) -> Result<bool, Fault> {
         let start = self.line.len();
         self.next = 0;
-        let read = (&mut self.reader).take(LONGEST_LINE).read_until(b'\n', &mut self.line)?;
-        if read == 0 {
+        let Some(ended) = read_line(&mut self.reader, LONGEST_LINE, &mut self.line)? else {
             return Ok(false);
-        }
+        };
         self.number += 1;
         let not_text = |reason: &str| {
             Problem::WrongFormat { format: self.format, reason: reason.into() }.on_line(self.number)
@@ -56,17 +63,14 @@ impl<R: BufRead> Text<R> {
         if self.line[start..].contains(&0) {
             return Err(not_text("binary data stands where text belongs"));
         }
-        if read as u64 == LONGEST_LINE {
+        if ended == Ended::TooLong {
             return Err(not_text("the line has no end"));
         }
-        while matches!(self.line.last(), Some(b'\n' | b'\r')) {
-            self.line.pop();
-        }
-        if self.number == 1 && self.line.starts_with(b"\xef\xbb\xbf") {
-            self.line.drain(..3);
+        if self.number == 1 && self.line.starts_with(BYTE_ORDER_MARK) {
+            self.line.drain(..BYTE_ORDER_MARK.len());
         }
         if let Some(mark) = self.comment
-            && let Some(at) = self.line.iter().position(|&b| b == mark)
+            && let Some(at) = (start..self.line.len()).find(|&at| begins_comment(&self.line, at, mark))
         {
             self.line.truncate(at);
         }
@@ -78,9 +82,9 @@ impl<R: BufRead> Text<R> {
         &self.line
     }
 
-    /// Drops the last byte of the present line.
-    pub(super) fn shorten(&mut self) {
-        self.line.pop();
+    /// Keeps the first `length` bytes of the present line.
+    pub(super) fn shorten(&mut self, length: usize) {
+        self.line.truncate(length);
     }
 
     /// `problem` on the present line.
@@ -121,14 +125,22 @@ impl<R: BufRead> Text<R> {
         word.ok_or_else(|| self.fault(Problem::truncated(expected)))
     }
 
-    /// The next word as a finite number.
+    /// The next word as a number. The first that is not finite is remembered.
     pub(super) fn coordinate(&mut self, expected: &str) -> Result<f64, Fault> {
         let word = self.expect_word(expected)?;
-        match parse::<f64>(self.bytes(word.clone())) {
-            Some(x) if x.is_finite() => Ok(x),
-            Some(_) => Err(self.fault(Problem::NonFinite(quote(self.bytes(word))))),
-            None => Err(self.fault(Problem::syntax(self.bytes(word), expected))),
+        let bytes = self.bytes(word);
+        let number = parse::<f64>(bytes).or_else(|| is_not_finite(bytes).then_some(f64::NAN));
+        let Some(x) = number else { return Err(self.fault(Problem::syntax(bytes, expected))) };
+        if !x.is_finite() && self.non_finite.is_none() {
+            let place = Place::Line(self.number);
+            self.non_finite = Some(NonFinite { place, coordinate: quote(bytes) });
         }
+        Ok(x)
+    }
+
+    /// The first coordinate that was not finite.
+    pub(super) fn take_non_finite(&mut self) -> Option<NonFinite> {
+        self.non_finite.take()
     }
 
     /// The next word as an integer.
@@ -164,6 +176,80 @@ impl<R: BufRead + Seek> Text<R> {
         (self.number, self.next) = (0, 0);
         Ok(())
     }
+}
+
+/// How a line ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ended {
+    /// With LF or CRLF.
+    LineFeed,
+    /// With CR alone, as on Macs of the last century.
+    Return,
+    /// With the file.
+    File,
+    /// It has more bytes than are read.
+    TooLong,
+}
+
+/// Appends the next line to `line`, without its end. `None` at the end of the file.
+pub(super) fn read_line(
+    reader: &mut impl BufRead,
+    longest: usize,
+    line: &mut Vec<u8>,
+) -> std::io::Result<Option<Ended>> {
+    let start = line.len();
+    loop {
+        let buffer = match reader.fill_buf() {
+            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            buffer => buffer?,
+        };
+        if buffer.is_empty() {
+            return Ok((line.len() > start).then_some(Ended::File));
+        }
+        let room = longest - (line.len() - start);
+        let part = &buffer[..buffer.len().min(room)];
+        let end = memchr2(b'\n', b'\r', part);
+        line.extend_from_slice(&part[..end.unwrap_or(part.len())]);
+        let (is_return, read) =
+            (end.is_some_and(|at| part[at] == b'\r'), end.map_or(part.len(), |at| at + 1));
+        reader.consume(read);
+        match end {
+            Some(_) if is_return && !step_over_line_feed(reader)? => return Ok(Some(Ended::Return)),
+            Some(_) => return Ok(Some(Ended::LineFeed)),
+            None if line.len() - start >= longest => return Ok(Some(Ended::TooLong)),
+            None => {}
+        }
+    }
+}
+
+/// Steps over the LF behind a CR, if there is one; also where a second CR stands between them, as in files
+/// that were converted twice.
+fn step_over_line_feed(reader: &mut impl BufRead) -> std::io::Result<bool> {
+    let length = match reader.fill_buf()? {
+        [b'\n', ..] => 1,
+        [b'\r', b'\n', ..] => 2,
+        _ => 0,
+    };
+    reader.consume(length);
+    Ok(length > 0)
+}
+
+/// What follows "1." in numbers that are none, where Microsoft's C library wrote them.
+const NO_NUMBERS: [&[u8]; 4] = [b"#IND", b"#QNAN", b"#SNAN", b"#INF"];
+
+/// Whether a word that is no number in Rust is what a C library writes where there is none: `-nan(ind)`,
+/// `1.#QNAN`, `-1.#IND00`.
+pub(super) fn is_not_finite(word: &[u8]) -> bool {
+    let word = word.strip_prefix(b"-").or(word.strip_prefix(b"+")).unwrap_or(word);
+    word.get(..4).is_some_and(|start| start.eq_ignore_ascii_case(b"nan("))
+        || word.strip_prefix(b"1.").is_some_and(|rest| NO_NUMBERS.iter().any(|name| rest.starts_with(name)))
+}
+
+/// Whether a comment begins at a byte of a line: not in the midst of `1.#IND`.
+fn begins_comment(line: &[u8], at: usize, mark: u8) -> bool {
+    let in_number =
+        || line[..at].ends_with(b"1.") && NO_NUMBERS.iter().any(|name| line[at..].starts_with(name));
+    line[at] == mark && !in_number()
 }
 
 fn is_space(byte: u8) -> bool {

@@ -9,9 +9,9 @@ use ply_rs_bw::ply::PropertyType;
 
 use super::super::Format;
 use super::super::error::{Fault, Problem};
-use super::super::text::Text;
-use super::header::Header;
-use super::{Body, CORNER_LISTS, Role};
+use super::super::text::{Text, is_not_finite, parse};
+use super::header::{COORDINATES, Header, WANTED};
+use super::{Body, CORNER_LISTS, Role, Vertex};
 
 /// Reads the body, which is `rest` bytes long.
 pub(super) fn read<R: BufRead>(reader: R, header: &Header, rest: u64, body: &mut Body) -> Result<(), Fault> {
@@ -25,23 +25,30 @@ pub(super) fn read<R: BufRead>(reader: R, header: &Header, rest: u64, body: &mut
         // A digit and a space for each property.
         body.reserve(*role, element.count as u64, rest, 2 * element.properties.len() as u64);
         for i in 0..element.count as u64 {
-            let mut position = [f64::NAN; 3];
+            let mut vertex = Vertex::UNKNOWN;
             numbers.clear();
             for (name, property) in &element.properties {
                 let done = match property.data_type {
-                    PropertyType::Scalar(_) => read_scalar(&mut text, *role, name, &mut position),
+                    PropertyType::Scalar(_) => read_scalar(&mut text, *role, name, &mut vertex),
                     PropertyType::List(..) => read_list(&mut text, *role, name, &mut numbers),
                 };
                 done.map_err(|fault| say_which(fault, &element.name, i, element.count))?;
             }
             text.skip_rest_of_line();
             let done = match role {
-                Role::Vertex => body.push_vertex(position),
+                Role::Vertex => {
+                    body.push_vertex(vertex);
+                    Ok(())
+                }
                 Role::Face | Role::Strips => body.push_corners(*role, &numbers, &mut corners),
                 Role::Other => Ok(()),
             };
             done.map_err(|problem| text.fault(problem))?;
         }
+    }
+    body.non_finite = text.take_non_finite();
+    if header.skipped.is_some() && text.word()?.is_some() {
+        return Err(text.fault(Problem::truncated("the end of the body")));
     }
     Ok(())
 }
@@ -50,14 +57,21 @@ fn read_scalar<R: BufRead>(
     text: &mut Text<R>,
     role: Role,
     name: &str,
-    position: &mut [f64; 3],
+    vertex: &mut Vertex,
 ) -> Result<(), Fault> {
-    let axis = ["x", "y", "z"].into_iter().position(|axis| axis == name && role == Role::Vertex);
-    match axis {
-        Some(axis) => position[axis] = text.coordinate("a coordinate")?,
-        None => {
-            text.expect_word("a property")?;
-        }
+    let is_vertex = role == Role::Vertex;
+    if let Some(axis) = COORDINATES.iter().position(|axis| *axis == name && is_vertex) {
+        vertex.position[axis] = text.coordinate("a coordinate")?;
+        return Ok(());
+    }
+    let word = text.expect_word("a property")?;
+    if is_vertex && name == WANTED {
+        let bytes = text.bytes(word);
+        vertex.wanted = match parse(bytes) {
+            Some(x) => x,
+            None if is_not_finite(bytes) => f64::NAN,
+            None => return Err(text.fault(Problem::syntax(bytes, "a number"))),
+        };
     }
     Ok(())
 }

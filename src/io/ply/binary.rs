@@ -1,6 +1,6 @@
 //! The body of a binary PLY file, through `ply-rs-bw`, element by element.
 
-use std::io::{BufReader, ErrorKind, Read, Seek};
+use std::io::{BufRead, BufReader, ErrorKind, Read, Seek};
 
 use ply_rs_bw::parser::{ParseError, Parser};
 use ply_rs_bw::ply::{
@@ -8,8 +8,9 @@ use ply_rs_bw::ply::{
 };
 
 use super::super::error::{Fault, Place, Problem};
-use super::header::Header;
-use super::{Body, CORNER_LISTS, Role};
+use super::super::loaded::NonFinite;
+use super::header::{Header, WANTED};
+use super::{Body, CORNER_LISTS, Role, Vertex};
 
 /// Reads the body, which is `rest` bytes long.
 pub(super) fn read<R: Read + Seek>(
@@ -28,20 +29,33 @@ pub(super) fn read<R: Read + Seek>(
         for i in 0..element.count as u64 {
             let done = match role {
                 Role::Vertex => read_one::<_, Vertex>(&mut reader, header.encoding, element)
-                    .map(|vertex| body.push_vertex(vertex.position)),
+                    .map(|vertex| Ok(body.push_vertex(vertex))),
                 Role::Face | Role::Strips => read_one::<_, Face>(&mut reader, header.encoding, element)
-                    .map(|face| body.push_corners(*role, &face.corners(), &mut corners)),
-                Role::Other => read_one::<_, Skipped>(&mut reader, header.encoding, element).map(|_| Ok(())),
+                    .map(|face| body.push_corners(*role, &face.corners(), &mut corners).map(|()| None)),
+                Role::Other => {
+                    read_one::<_, Skipped>(&mut reader, header.encoding, element).map(|_| Ok(None))
+                }
+            };
+            let mut place = || -> std::io::Result<Place> {
+                let byte = reader.stream_position()?;
+                Ok(Place::Element { name: element.name.clone(), number: i, byte })
             };
             let problem = match done {
-                Ok(Ok(())) => continue,
+                Ok(Ok(None)) => continue,
+                Ok(Ok(Some(x))) => {
+                    if body.non_finite.is_none() {
+                        body.non_finite = Some(NonFinite { place: place()?, coordinate: x.to_string() });
+                    }
+                    continue;
+                }
                 Ok(Err(problem)) => problem,
                 Err(error) => explain(&error, element),
             };
-            let byte = reader.stream_position()?;
-            let place = Place::Element { name: element.name.clone(), number: i, byte };
-            return Err(Fault { place, problem });
+            return Err(Fault { place: place()?, problem });
         }
+    }
+    if header.skipped.is_some() && !reader.fill_buf()?.is_empty() {
+        return Err(Problem::truncated("the end of the body").into());
     }
     Ok(())
 }
@@ -97,17 +111,13 @@ impl PropertyAccess for Skipped {
     }
 }
 
-/// The coordinates of an element.
-struct Vertex {
-    position: [f64; 3],
-}
-
 impl Vertex {
     fn set(&mut self, name: &str, value: f64) -> PropertyAccessResult {
         match name {
             "x" => self.position[0] = value,
             "y" => self.position[1] = value,
             "z" => self.position[2] = value,
+            WANTED => self.wanted = value,
             _ => return PropertyAccessResult::Ignored,
         }
         PropertyAccessResult::Set
@@ -116,7 +126,7 @@ impl Vertex {
 
 impl PropertyAccess for Vertex {
     fn new() -> Self {
-        Vertex { position: [f64::NAN; 3] }
+        Vertex::UNKNOWN
     }
 
     fn set_float(&mut self, name: &str, value: f32) -> PropertyAccessResult {

@@ -3,6 +3,10 @@
 //! `ply-rs-bw` parses it. Comments are taken out before: they may be in any encoding. Properties of
 //! no interest get names of their own before, as it refuses names like "distance[<0.1]" and would merge
 //! two of the same name. Elements and properties that matter must have different names.
+//!
+//! Lines that begin with no keyword of PLY are skipped, too: old programs wrote comments without the word.
+//! Not those that could be an element or a property with its keyword misspelt, and only if the body fits (see
+//! [`read`](super::read)).
 
 use std::collections::HashSet;
 use std::io::{BufRead, Read};
@@ -11,12 +15,17 @@ use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Encoding, PropertyType};
 
 use super::super::Format;
-use super::super::error::{Fault, Problem, quote};
+use super::super::error::{Fault, Place, Problem, quote};
+use super::super::loaded::Passed;
+use super::super::text::{BYTE_ORDER_MARK, Ended, read_line};
 use super::binary::Skipped;
 use super::{CORNER_LISTS, Role};
 
 /// The names of the coordinates of a vertex.
-const COORDINATES: [&str; 3] = ["x", "y", "z"];
+pub(super) const COORDINATES: [&str; 3] = ["x", "y", "z"];
+
+/// The name that a property of the user's choice has here.
+pub(super) const WANTED: &str = "wanted";
 
 /// The longest header that is read, comments included. Real ones are a few hundred bytes; a file that has
 /// no end of the header is not read to its end to find out.
@@ -31,16 +40,63 @@ pub(super) struct Header {
     pub(super) bytes: u64,
     /// Its length in lines.
     pub(super) lines: u64,
+    /// The lines that were skipped, if any.
+    pub(super) skipped: Option<SkippedLines>,
 }
 
-/// Reads the header; `reader` then stands on the first byte of the body.
-pub(super) fn read<R: BufRead>(reader: &mut R) -> Result<Header, Fault> {
-    let mut kept = Kept::default();
+/// Lines of a header that begin with no keyword.
+#[derive(Clone, Debug)]
+pub(super) struct SkippedLines {
+    /// The number of the first one.
+    line: u64,
+    /// The first one, quoted.
+    first: String,
+    count: usize,
+}
+
+impl SkippedLines {
+    /// What to tell the user.
+    pub(super) fn passed(self) -> (Place, Passed) {
+        let SkippedLines { line, first, count } = self;
+        (Place::Line(line), Passed::HeaderLines { first, lines: count })
+    }
+
+    /// What is wrong where they should not have been skipped.
+    pub(super) fn fault(self) -> Fault {
+        let expected = EXPECTED.into();
+        Problem::Syntax { found: self.first, expected }.on_line(self.line)
+    }
+}
+
+/// What stands in a header.
+const EXPECTED: &str = "a PLY header line (format, element, property)";
+
+/// Reads the header; `reader` then stands on the first byte of the body. The scalar property `wanted` of the
+/// vertices is named [`WANTED`] in it.
+pub(super) fn read<R: BufRead>(reader: &mut R, wanted: Option<&str>) -> Result<Header, Fault> {
+    let mut kept = Kept { wanted: wanted.map(|name| name.as_bytes().to_vec()), ..Kept::default() };
     let (mut bytes, mut lines) = (0u64, 0u64);
+    if reader.fill_buf()?.starts_with(BYTE_ORDER_MARK) {
+        bytes = BYTE_ORDER_MARK.len() as u64;
+        reader.consume(BYTE_ORDER_MARK.len());
+    }
     let mut line = Vec::new();
+    // All lines end as the first one does: what stands behind the last CR may be data that look like LF.
+    let mut end = None;
     loop {
         line.clear();
-        let read = reader.by_ref().take(LONGEST_HEADER - bytes).read_until(b'\n', &mut line)? as u64;
+        let mut rest = reader.by_ref().take(LONGEST_HEADER - bytes);
+        let limit = rest.limit();
+        match end {
+            None => {
+                let ended = read_line(&mut rest, LONGEST_HEADER as usize, &mut line)?;
+                end = Some(if ended == Some(Ended::Return) { b'\r' } else { b'\n' });
+            }
+            Some(end) => {
+                rest.read_until(end, &mut line)?;
+            }
+        }
+        let read = limit - rest.limit();
         bytes += read;
         lines += 1;
         let words = line.trim_ascii();
@@ -71,7 +127,8 @@ pub(super) fn read<R: BufRead>(reader: &mut R) -> Result<Header, Fault> {
     if u32::try_from(vertex_count).is_err() {
         return Err(last_line(Problem::TooManyVertices));
     }
-    Ok(Header { encoding: header.encoding, elements, vertex_count, bytes, lines })
+    let skipped = kept.skipped;
+    Ok(Header { encoding: header.encoding, elements, vertex_count, bytes, lines, skipped })
 }
 
 /// The header without its comments.
@@ -83,6 +140,10 @@ struct Kept {
     /// The names of the elements, and of the properties of the last one that matter.
     elements: HashSet<Vec<u8>>,
     properties: HashSet<Vec<u8>>,
+    /// The name of the property of the vertices that is wanted, and whether the last element is theirs.
+    wanted: Option<Vec<u8>>,
+    of_vertices: bool,
+    skipped: Option<SkippedLines>,
 }
 
 impl Kept {
@@ -93,18 +154,30 @@ impl Kept {
             b"" | b"comment" | b"obj_info" => return Ok(()),
             b"element" => {
                 self.properties.clear();
-                self.elements.insert(words.next().unwrap_or_default().to_vec())
+                let name = words.next().unwrap_or_default();
+                self.of_vertices = name == b"vertex";
+                self.elements.insert(name.to_vec())
             }
             b"property" => {
                 let name = words.next_back().unwrap_or_default();
                 if !COORDINATES.iter().chain(&CORNER_LISTS).any(|known| known.as_bytes() == name) {
+                    let is_wanted = self.of_vertices && self.wanted.as_deref() == Some(name);
+                    let renamed = match is_wanted && self.properties.insert(name.to_vec()) {
+                        true => WANTED.to_string(),
+                        false => format!("other_{number}"),
+                    };
                     let definition = &line[..line.len() - name.len()];
-                    let renamed = [definition, format!("other_{number}").as_bytes()].concat();
-                    return self.keep(line, &renamed, number);
+                    return self.keep(line, &[definition, renamed.as_bytes()].concat(), number);
                 }
                 self.properties.insert(name.to_vec())
             }
-            _ => true,
+            b"ply" | b"format" | b"end_header" => true,
+            _ if may_define(line) => return Err(Problem::syntax(line, EXPECTED).on_line(number)),
+            _ => {
+                let new = || SkippedLines { line: number, first: quote(line), count: 0 };
+                self.skipped.get_or_insert_with(new).count += 1;
+                return Ok(());
+            }
         };
         if !is_new {
             return Err(Problem::syntax(line, "a name that was not used before").on_line(number));
@@ -126,13 +199,24 @@ impl Kept {
     fn explain(&self, error: &ply_rs_bw::parser::ParseError) -> Fault {
         let line = error.line().and_then(|line| self.lines.get(line.checked_sub(1)?));
         match line {
-            Some((number, line)) => {
-                Problem::syntax(line, "a PLY header line (format, element, property)").on_line(*number)
-            }
+            Some((number, line)) => Problem::syntax(line, EXPECTED).on_line(*number),
             None => Problem::syntax(b"end_header", "a line \"format ascii 1.0\" or a binary format")
                 .on_line(self.lines.last().map_or(1, |(number, _)| *number)),
         }
     }
+}
+
+/// Whether a line that begins with no keyword could be an element ("elemnt face 12") or a property ("propery
+/// float x").
+fn may_define(line: &[u8]) -> bool {
+    const TYPES: &[&str] = &[
+        "list", "char", "uchar", "short", "ushort", "int", "uint", "float", "double", "int8", "uint8",
+        "int16", "uint16", "int32", "uint32", "float32", "float64",
+    ];
+    let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).skip(1);
+    let (second, third, more) = (words.next(), words.next(), words.next());
+    second.is_some_and(|word| TYPES.iter().any(|name| name.as_bytes() == word))
+        || more.is_none() && third.is_some_and(|word| word.iter().all(u8::is_ascii_digit))
 }
 
 fn role(name: &str) -> Role {

@@ -8,32 +8,72 @@
 mod ascii;
 mod binary;
 mod header;
-mod property;
 
 use std::io::{BufReader, Read, Seek, Write};
 
-use ply_rs_bw::ply::Encoding;
-
-pub(super) use property::vertex_property;
+use ply_rs_bw::ply::{Encoding, PropertyType};
 
 use super::Coordinates;
 use super::error::{Fault, Problem, quote};
+use super::loaded::{Content, NonFinite};
 use super::polygon::PolygonMesh;
 use crate::mesh::TriMesh;
+use header::{COORDINATES, Header, WANTED};
 
 /// Reads a mesh from a file of `length` bytes.
-pub(super) fn read<R: Read + Seek>(source: R, length: u64) -> Result<TriMesh, Fault> {
+///
+/// Lines of the header are skipped only where the body is exactly what the others say: then none of them was
+/// needed.
+pub(super) fn read<R: Read + Seek>(source: R, length: u64) -> Result<Content, Fault> {
     let mut reader = BufReader::with_capacity(1 << 16, source);
-    let header = header::read(&mut reader)?;
-    let mut body = Body { mesh: PolygonMesh::default(), vertex_count: header.vertex_count };
-    let rest = length.saturating_sub(header.bytes);
-    match header.encoding {
-        Encoding::Ascii => ascii::read(reader, &header, rest, &mut body)?,
-        Encoding::BinaryLittleEndian | Encoding::BinaryBigEndian => {
-            binary::read(reader, &header, rest, &mut body)?;
-        }
+    let header = header::read(&mut reader, None)?;
+    let Body { mesh, non_finite, .. } = read_body(reader, &header, length, Wanted::Mesh)?;
+    let passed = header.skipped.map(header::SkippedLines::passed);
+    Ok(Content { mesh, non_finite, passed: passed.into_iter().collect() })
+}
+
+/// The values of the vertices' scalar property `name`, in the order of the file; `None` where there is none.
+pub(super) fn vertex_property<R: Read + Seek>(
+    source: R,
+    length: u64,
+    name: &str,
+) -> Result<Option<Vec<f64>>, Fault> {
+    let mut reader = BufReader::with_capacity(1 << 16, source);
+    let header = header::read(&mut reader, Some(name))?;
+    let axis = COORDINATES.iter().position(|axis| *axis == name);
+    let name = axis.map_or(WANTED, |axis| COORDINATES[axis]);
+    let of_vertices = header.elements.iter().filter(|(role, _)| *role == Role::Vertex);
+    let mut properties = of_vertices.filter_map(|(_, element)| element.properties.get(name));
+    if !properties.any(|property| matches!(property.data_type, PropertyType::Scalar(_))) {
+        return Ok(None);
     }
-    Ok(body.mesh.finish())
+    let wanted = axis.map_or(Wanted::Property, Wanted::Axis);
+    Ok(Some(read_body(reader, &header, length, wanted)?.values))
+}
+
+/// Reads the body of a file of `length` bytes.
+fn read_body<R: Read + Seek>(
+    reader: BufReader<R>,
+    header: &Header,
+    length: u64,
+    wanted: Wanted,
+) -> Result<Body, Fault> {
+    let (mesh, vertex_count) = (PolygonMesh::default(), header.vertex_count);
+    let mut body = Body { mesh, vertex_count, non_finite: None, wanted, values: Vec::new() };
+    let rest = length.saturating_sub(header.bytes);
+    let done = match header.encoding {
+        Encoding::Ascii => ascii::read(reader, header, rest, &mut body),
+        Encoding::BinaryLittleEndian | Encoding::BinaryBigEndian => {
+            binary::read(reader, header, rest, &mut body)
+        }
+    };
+    match (done, &header.skipped) {
+        (Ok(()), _) => Ok(body),
+        (Err(fault), Some(skipped)) if !matches!(fault.problem, Problem::Read(_)) => {
+            Err(skipped.clone().fault())
+        }
+        (Err(fault), _) => Err(fault),
+    }
 }
 
 /// What an element is to us.
@@ -52,11 +92,39 @@ enum Role {
 /// The names of the list of vertex numbers.
 const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
+/// What matters of a vertex.
+#[derive(Clone, Copy, Debug)]
+struct Vertex {
+    position: [f64; 3],
+    /// The property [`WANTED`].
+    wanted: f64,
+}
+
+impl Vertex {
+    /// Nothing is known of it.
+    const UNKNOWN: Vertex = Vertex { position: [f64::NAN; 3], wanted: f64::NAN };
+}
+
+/// What is read of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wanted {
+    /// The mesh alone.
+    Mesh,
+    /// Also the coordinates along an axis, as they stand there.
+    Axis(usize),
+    /// Also the property [`WANTED`] of the vertices.
+    Property,
+}
+
 /// The mesh in the making. The faces may come before the vertices, so numbers are checked against the
 /// header.
 struct Body {
     mesh: PolygonMesh,
     vertex_count: u64,
+    non_finite: Option<NonFinite>,
+    wanted: Wanted,
+    /// The values of what is wanted, for each vertex.
+    values: Vec<f64>,
 }
 
 impl Body {
@@ -70,12 +138,15 @@ impl Body {
         }
     }
 
-    fn push_vertex(&mut self, position: [f64; 3]) -> Result<(), Problem> {
-        if let Some(x) = position.iter().find(|x| !x.is_finite()) {
-            return Err(Problem::NonFinite(x.to_string()));
-        }
+    /// Appends a vertex. Returns a coordinate that is not finite, if there is one.
+    fn push_vertex(&mut self, Vertex { position, wanted }: Vertex) -> Option<f64> {
         self.mesh.vertices.push(position);
-        Ok(())
+        match self.wanted {
+            Wanted::Mesh => {}
+            Wanted::Axis(axis) => self.values.push(position[axis]),
+            Wanted::Property => self.values.push(wanted),
+        }
+        position.into_iter().find(|x| !x.is_finite())
     }
 
     /// Appends a face or a list of strips. `corners` is changed.

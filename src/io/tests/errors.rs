@@ -21,6 +21,10 @@ fn files_that_cannot_be_opened() {
     assert!(missing.ends_with("); check the path and the permissions"), "{missing}");
     assert_eq!(said("a.xyz"), ": the extension \"xyz\" is not known; use .obj, .ply, .stl or .off");
     assert_eq!(said("a"), ": the extension \"\" is not known; use .obj, .ply, .stl or .off");
+    assert_eq!(
+        TriMesh::load("-").unwrap_err().to_string(),
+        "-: standard input is not read; save the model as a file and name that"
+    );
     std::fs::create_dir(directory.path().join("directory.STL")).unwrap();
     let directory_said = said("directory.STL");
     assert!(directory_said.starts_with(": the file cannot be opened ("), "{directory_said}");
@@ -28,6 +32,27 @@ fn files_that_cannot_be_opened() {
         let name = format!("empty.{}", format.extension());
         std::fs::write(directory.path().join(&name), "").unwrap();
         assert_eq!(said(&name), ": the file is empty; export the model again");
+    }
+}
+
+/// Opening a pipe that nobody writes to would never end.
+#[test]
+#[cfg(unix)]
+fn pipes_and_devices_are_refused_and_not_waited_for() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = |name: &str| directory.path().join(name);
+    let made = std::process::Command::new("mkfifo").arg(path("pipe.ply")).status().unwrap();
+    assert!(made.success());
+    std::os::unix::fs::symlink("/dev/zero", path("zero.ply")).unwrap();
+    for name in ["pipe.ply", "zero.ply"] {
+        let error = TriMesh::load(path(name)).unwrap_err().to_string();
+        assert!(
+            error.ends_with("this is a pipe or a device; save what comes from it as a file and name that")
+        );
+        let error = vertex_property(&path(name), "x").unwrap_err().to_string();
+        assert!(error.contains("this is a pipe or a device"), "{error}");
+        let merged = merge_tiles(&[path(name)], &path("whole.ply")).unwrap_err().to_string();
+        assert!(merged.contains("this is not a tile"), "{merged}");
     }
 }
 
@@ -91,15 +116,21 @@ fn coordinates_that_are_not_finite() {
         ply_ascii(1, 1, "0 0 nan\n3 0 0 0\n"),
         &format!("model.ply, line 10: {}", what("\"nan\"")),
     );
-    let stl = "solid\nfacet normal 0 0 1\nouter loop\nvertex inf 0 0\n";
+    let stl = "solid\nfacet normal 0 0 1\nouter loop\nvertex inf 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n\
+        endfacet\nendsolid\n";
     check(Format::Stl, stl, &format!("model.stl, line 4: {}", what("\"inf\"")));
 
     let mut stl = written(&tetrahedron(), Format::Stl, Coordinates::F32);
-    stl[84 + 50 + 12..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
-    check(Format::Stl, stl, &format!("model.stl, triangle 1 (byte 134): {}", what("NaN")));
+    for t in 1..4 {
+        stl[84 + 50 * t + 12..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    }
+    stl[84 + 20..][..4].copy_from_slice(&f32::INFINITY.to_le_bytes());
+    check(Format::Stl, stl, &format!("model.stl, triangle 0 (byte 84): {}", what("inf")));
     let mut ply = written(&tetrahedron(), Format::Ply, Coordinates::F64);
     let body = ply.len() - 4 * 24 - 4 * 13;
-    ply[body + 24..][..8].copy_from_slice(&f64::INFINITY.to_le_bytes());
+    for v in 1..3 {
+        ply[body + 24 * v..][..8].copy_from_slice(&f64::INFINITY.to_le_bytes());
+    }
     check(Format::Ply, ply, &format!("model.ply, vertex 1 (byte {}): {}", body + 48, what("inf")));
 }
 

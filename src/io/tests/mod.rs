@@ -2,6 +2,7 @@
 
 mod broken;
 mod errors;
+mod passed;
 mod round_trip;
 mod tolerance;
 
@@ -11,16 +12,26 @@ use std::path::PathBuf;
 use super::*;
 
 /// Loads a file with this content; the error as a user sees it, for a file `model.<extension>`.
-fn load_bytes(format: Format, bytes: &[u8]) -> Result<TriMesh, String> {
-    read(Cursor::new(bytes), format).map_err(|Fault { place, problem }| {
-        let path = PathBuf::from(format!("model.{}", format.extension()));
+fn load_bytes(format: Format, bytes: &[u8]) -> Result<Loaded, String> {
+    let path = PathBuf::from(format!("model.{}", format.extension()));
+    let loaded = read(Cursor::new(bytes), format).and_then(|content| content.finish(&path));
+    loaded.map_err(|Fault { place, problem }| {
         LoadError { path, format: Some(format), place, problem }.to_string()
     })
 }
 
 /// Loads a file that is in order.
 fn good(format: Format, bytes: impl AsRef<[u8]>) -> TriMesh {
-    load_bytes(format, bytes.as_ref()).unwrap()
+    let Loaded { mesh, left_out, notes } = load_bytes(format, bytes.as_ref()).unwrap();
+    assert_eq!((left_out.as_slice(), notes.as_slice()), (&[][..], &[][..]));
+    mesh
+}
+
+/// Loads a file that is read with one note: the mesh and the note.
+fn noted(format: Format, bytes: impl AsRef<[u8]>) -> (TriMesh, String) {
+    let Loaded { mesh, notes, .. } = load_bytes(format, bytes.as_ref()).unwrap();
+    let [note] = notes.as_slice() else { panic!("one note, not {notes:?}") };
+    (mesh, note.to_string())
 }
 
 /// The sentence about a file that is not in order.
