@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::TriMesh;
+use super::degenerate::{degenerate, has_lines, take_out};
 use super::equal::{first_equal, hash};
-use crate::geom::predicates::projection_axis;
 
 /// What [`clean`] or [`weld`] did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -21,6 +21,9 @@ pub struct CleanReport {
     pub duplicate_triangles: usize,
     /// Vertices that were dropped because no triangle has them (any more).
     pub unreferenced_vertices: usize,
+    /// Triangles that were split at a vertex on their edge, because a triangle without area that was dropped
+    /// had that vertex and that edge.
+    pub split_triangles: usize,
 }
 
 impl CleanReport {
@@ -38,6 +41,12 @@ impl fmt::Display for CleanReport {
         let plural = |n: usize, one: &str, many: &str| format!("{n} {}", if n == 1 { one } else { many });
         let parts = [
             ("welded", self.welded_vertices, "vertex", "vertices"),
+            (
+                "split",
+                self.split_triangles,
+                "triangle at a vertex on its edge",
+                "triangles at vertices on their edges",
+            ),
             ("dropped", self.degenerate_triangles, "degenerate triangle", "degenerate triangles"),
             ("dropped", self.duplicate_triangles, "duplicate triangle", "duplicate triangles"),
             ("dropped", self.unreferenced_vertices, "unreferenced vertex", "unreferenced vertices"),
@@ -58,16 +67,16 @@ impl fmt::Display for CleanReport {
 /// 1. Vertices at exactly the same position become the first of them (-0 equals 0). No tolerance: a near
 ///    vertex is another vertex.
 /// 2. Triangles with two equal corners or exactly no area are dropped. The area is decided by exact
-///    predicates, so a sliver stays however thin it is.
-/// 3. Triangles with the corners and the orientation of an earlier one are dropped. Two triangles with the
-///    same corners and *opposite* orientation both stay: together they are a fin without thickness, a
-///    surface that was drawn from both sides. Dropping one would leave a sheet with a border where the
-///    file has a closed surface, dropping both a hole where the file has something.
+///    predicates, so a sliver stays however thin it is. Where the corners lie on a line, the triangle across
+///    the longest edge is split at the corner in the middle (see `degenerate.rs`): so a closed mesh stays
+///    closed.
+/// 3. Triangles with the corners and the orientation of an earlier one are dropped; where step 2 splits, those
+///    with an area also before it. Two triangles with the same corners and *opposite* orientation both stay: together they are a
+///    fin without thickness, a surface that was drawn from both sides. Dropping one would leave a sheet with a
+///    border where the file has a closed surface, dropping both a hole where the file has something.
 /// 4. Vertices that no triangle has are dropped.
 ///
-/// What remains keeps its order, so the result depends on nothing but the mesh. Dropping a sliver without
-/// area opens the surface in the sense of topology (its neighbours no longer share an edge), though not a
-/// gap in space.
+/// What remains keeps its order, so the result depends on nothing but the mesh.
 ///
 /// # Panics
 /// When a triangle names a vertex that the mesh does not have; meshes from [`load`](crate::io::load) never do.
@@ -76,11 +85,17 @@ pub fn clean(mesh: TriMesh) -> (TriMesh, CleanReport) {
     let mut report =
         CleanReport { welded_vertices: merge_equal(&vertices, &mut triangles), ..CleanReport::default() };
 
-    let before = triangles.len();
-    triangles = triangles.into_par_iter().filter(|t| !is_degenerate(*t, &vertices)).collect();
-    report.degenerate_triangles = before - triangles.len();
-
-    report.duplicate_triangles = drop_duplicates(&mut triangles);
+    let flat = degenerate(&triangles, &vertices);
+    report.degenerate_triangles = flat.len();
+    if has_lines(&flat, &triangles, &vertices) {
+        // Of two neighbours that are the same only one would be split.
+        report.duplicate_triangles = drop_duplicates(&mut triangles, &flat);
+        let flat = degenerate(&triangles, &vertices);
+        report.split_triangles = take_out(&flat, &mut triangles, &vertices);
+    } else if !flat.is_empty() {
+        drop_numbered(&mut triangles, &flat);
+    }
+    report.duplicate_triangles += drop_duplicates(&mut triangles, &[]);
     report.unreferenced_vertices = drop_unreferenced(&mut vertices, &mut triangles) - report.welded_vertices;
     (TriMesh { vertices, triangles }, report)
 }
@@ -115,14 +130,19 @@ fn first_at_position(vertices: &[[f64; 3]]) -> Vec<u32> {
     first_equal(vertices, |v| v.map(|x| (x + 0.0).to_bits()), |&key| hash(key))
 }
 
-/// Whether a triangle has exactly no area.
-fn is_degenerate(t: [u32; 3], vertices: &[[f64; 3]]) -> bool {
-    let [a, b, c] = t;
-    a == b || b == c || c == a || projection_axis(t.map(|v| vertices[v as usize])).is_none()
+/// Drops the triangles with these numbers, which ascend.
+fn drop_numbered(triangles: &mut Vec<[u32; 3]>, numbers: &[u32]) {
+    let (mut number, mut next) = (0, numbers.iter().peekable());
+    triangles.retain(|_| {
+        let goes = next.next_if_eq(&&number).is_some();
+        number += 1;
+        !goes
+    });
 }
 
-/// Drops triangles that are an earlier one again, whichever corner they begin with. Returns how many.
-fn drop_duplicates(triangles: &mut Vec<[u32; 3]>) -> usize {
+/// Drops triangles that are an earlier one again, whichever corner they begin with, but not those with the numbers
+/// `kept`, which ascend. Returns how many.
+fn drop_duplicates(triangles: &mut Vec<[u32; 3]>, kept: &[u32]) -> usize {
     let key = |t: [u32; 3]| match t {
         [a, b, c] if a < b && a < c => [a, b, c],
         [a, b, c] if b < c => [b, c, a],
@@ -130,8 +150,9 @@ fn drop_duplicates(triangles: &mut Vec<[u32; 3]>) -> usize {
     };
     let first = first_equal(triangles, key, |&key| hash(key.map(u64::from)));
     let before = triangles.len();
-    let mut numbers = first.iter().zip(0..);
-    triangles.retain(|_| numbers.next().is_some_and(|(&first, t)| first == t));
+    let (mut numbers, mut kept) = (first.iter().zip(0..), kept.iter().peekable());
+    triangles
+        .retain(|_| numbers.next().is_some_and(|(&first, t)| kept.next_if_eq(&&t).is_some() || first == t));
     before - triangles.len()
 }
 
@@ -190,6 +211,7 @@ mod tests {
             degenerate_triangles: 2,
             duplicate_triangles: 2,
             unreferenced_vertices: 2,
+            split_triangles: 0,
         };
         assert_eq!(report, expected);
         assert_eq!(
@@ -224,7 +246,7 @@ mod tests {
         assert!(clean(mesh(&upright, &[[0, 1, 2]])).1.is_clean());
     }
 
-    /// What [`clean`] says it does, word by word.
+    /// What [`clean`] says it does, word by word, where no triangle is to be split.
     fn slow_clean(mesh: &TriMesh) -> TriMesh {
         let position = |v: u32| mesh.vertices[v as usize];
         let first = |v: u32| (0..).find(|&u| position(u) == position(v)).unwrap();
@@ -289,6 +311,10 @@ mod tests {
             triangles in prop::collection::vec(prop::array::uniform3(0u32..12), 0..40),
         ) {
             let vertices: Vec<_> = vertices.into_iter().map(|v| v.map(f64::from)).collect();
+            // Lines, which have splits of their own, with corners at one place only.
+            let is_line = |t: &[u32; 3]| !degenerate(&[*t], &vertices).is_empty();
+            let has_equal = |t: &[u32; 3]| (0..3).any(|k| vertices[t[k] as usize] == vertices[t[(k + 1) % 3] as usize]);
+            let triangles: Vec<_> = triangles.into_iter().filter(|t| !is_line(t) || has_equal(t)).collect();
             let raw = mesh(&vertices, &triangles);
             let (cleaned, report) = clean(raw.clone());
             prop_assert_eq!(&cleaned, &slow_clean(&raw));

@@ -1,6 +1,7 @@
 //! Triangle meshes: the type, its clean-up, its topology, its measures, and generated models.
 
 mod clean;
+mod degenerate;
 pub mod measure;
 pub mod shapes;
 mod topology;
