@@ -59,7 +59,7 @@ fn patch(random: &mut Random) -> TriMesh {
         mesh.triangles.extend(cut);
     }
     match random.next() % 10 {
-        0..3 if mesh.triangles.len() > 4 => mesh.triangles.retain(|_| random.next() % 7 > 0),
+        0..3 if mesh.triangles.len() > 4 => mesh.triangles.retain(|_| !random.next().is_multiple_of(7)),
         9 => {
             let first = mesh.vertices.len() as u32;
             let above = random.within(0.5..4.0);

@@ -73,6 +73,6 @@ mod tests {
             BandSettings { lattice: Lattice { voxel: 0.5 }, r: 0.0, half_width: 1.0, slab: Slab::WHOLE };
         let batch = leaves_at_jumps(&leaves, &[(Ijk::default(), 16)], &settings, |node| node.0[0] >= 0);
         assert_eq!(batch.origins, [Ijk::new(0, 0, 8), Ijk::new(0, 8, 0), Ijk::new(0, 8, 8)]);
-        assert!(batch.values.iter().all(|&v| v == -0.5));
+        assert!(batch.values.iter().all(|&v| v == -settings.background()));
     }
 }

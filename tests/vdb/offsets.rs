@@ -2,7 +2,7 @@
 
 use crate::python;
 use exocarp::geom::triangle::Triangle;
-use exocarp::lattice::{Ijk, Lattice};
+use exocarp::lattice::{Ijk, LEAF_SIZE, Lattice};
 use exocarp::mesh::{TriMesh, shapes};
 use exocarp::offset::{Length, OffsetResult, OffsetSettings, VoxelSize, offset};
 use exocarp::run::RunSettings;
@@ -51,6 +51,40 @@ fn all_offsets_pass_the_checks_but_the_gradient_at_creases() {
             assert!(unexpected.is_empty(), "{} {distance}: {unexpected:?}", shape.name);
         }
     }
+}
+
+#[test]
+fn bands_are_level_sets_at_every_voxel_size() {
+    // A box whose faces lie in planes of nodes, so that many nodes are at exactly three voxels; and one that is turned.
+    let turned = |mut mesh: TriMesh| {
+        let rotation = glam::DQuat::from_axis_angle(glam::DVec3::new(1.0, 2.0, -0.5).normalize(), 0.7);
+        mesh.vertices.iter_mut().for_each(|v| *v = (rotation * glam::DVec3::from(*v)).to_array());
+        mesh
+    };
+    let mut at_three_voxels = 0;
+    for scale in [1e-3, 0.37, 1.0, 2048.0, 1e6 / 7.0] {
+        for share in [0.25, 0.1, 1.0 / 3.0, 0.07] {
+            for mesh in [shapes::cube(1), turned(shapes::cube(1))] {
+                let vertices = mesh.vertices.iter().map(|v| v.map(|x| scale * x)).collect();
+                let (mesh, voxel) = (TriMesh { vertices, ..mesh }, scale * share);
+                let surface = level_set(&mesh, scale * 0.5, voxel).band.unwrap().surface;
+                let what = format!("{scale} {share}");
+                let failed = surface.check_level_set(&run()).unwrap();
+                assert!(failed.iter().all(|message| message.starts_with("test 9")), "{what}: {failed:?}");
+                let (background, count) = (surface.background(), surface.leaf_count());
+                assert!(f64::from(background) > 3.0 * voxel, "{what}");
+                let (mut values, mut active) = (vec![0.0; count * LEAF_SIZE], vec![[0; 8]; count]);
+                surface.read_leaves(0, &mut values, &mut active).unwrap();
+                for (n, phi) in values.iter().enumerate() {
+                    let is_active = active[n / LEAF_SIZE][n % LEAF_SIZE / 64] >> (n % 64) & 1 == 1;
+                    assert_eq!(is_active, phi.abs() < background, "{what}: {phi}");
+                    assert!(is_active || phi.abs() == background, "{what}: {phi}");
+                    at_three_voxels += u64::from(is_active && f64::from(phi.abs()) > 2.9999 * voxel);
+                }
+            }
+        }
+    }
+    assert!(at_three_voxels > 1000, "{at_three_voxels}");
 }
 
 /// Signed distance by looking at every triangle: the smallest distance, negative where the triangles' solid
