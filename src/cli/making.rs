@@ -9,8 +9,7 @@ use exocarp::error::Error;
 use exocarp::io::{Format, MeshStream, SaveError, Tile, save_tile};
 use exocarp::mesh::TriMesh;
 use exocarp::offset::{
-    Cut, OffsetResult, OffsetSettings, PieceSink, available_memory, check_memory, job, offset, offset_band,
-    offset_in_slabs,
+    Cut, OffsetResult, OffsetSettings, PieceSink, available_memory, job, offset, offset_band, offset_in_slabs,
 };
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -21,10 +20,8 @@ const STREAM_MEMORY: u64 = 1 << 30;
 /// A way to make an offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
-    /// The band, no mesh.
-    Band,
-    /// All at once.
-    Whole,
+    /// All at once, or slab by slab within so many bytes where that does not fit.
+    Whole { or_slabs: Option<u64> },
     /// Slab by slab, within so many bytes.
     Slabs(u64),
     /// One tile.
@@ -42,30 +39,19 @@ pub(super) fn make(
     let Some(output) = &arguments.output else {
         return Ok((offset_band(mesh, settings, run)?, 0.0));
     };
-    match way(mesh, arguments, settings, session)? {
-        Way::Band => Ok((offset_band(mesh, settings, run)?, 0.0)),
-        Way::Whole => {
-            let result = offset(mesh, settings, run)?;
+    match way(arguments, output, session)? {
+        Way::Whole { or_slabs } => {
+            let result = match (offset(mesh, settings, run), or_slabs) {
+                (Err(Error::Memory(_)), Some(memory)) => {
+                    return in_slabs(mesh, arguments, settings, memory, output, session);
+                }
+                (result, _) => result?,
+            };
             let started = Instant::now();
             save_mesh(&result.mesh, output, coordinates(arguments.more.f64), session)?;
             Ok((result, started.elapsed().as_secs_f64()))
         }
-        Way::Slabs(memory) => {
-            let staged = session.staging.stage(output)?;
-            let named = |error| of_output(error, output);
-            let stream = MeshStream::create(&staged, coordinates(arguments.more.f64)).map_err(named)?;
-            let mut sink = Streamed { stream, seconds: 0.0 };
-            let result =
-                offset_in_slabs(mesh, settings, Cut::Memory(memory), &mut sink, run).map_err(|error| {
-                    match error {
-                        Error::Save(error) => of_output(error, output),
-                        other => other.into(),
-                    }
-                })?;
-            let started = Instant::now();
-            sink.stream.finish().map_err(named)?;
-            Ok((result, sink.seconds + started.elapsed().as_secs_f64()))
-        }
+        Way::Slabs(memory) => in_slabs(mesh, arguments, settings, memory, output, session),
         Way::Tile(TileNumber { number, of }) => {
             let staged = session.staging.stage(output)?;
             let tile = identity(TileNumber { number, of }, mesh, settings);
@@ -80,27 +66,40 @@ pub(super) fn make(
     }
 }
 
-fn way(
+/// Makes the offset slab by slab within so many bytes, and streams its mesh to the output.
+fn in_slabs(
     mesh: &TriMesh,
     arguments: &OffsetArguments,
     settings: &OffsetSettings,
+    memory: u64,
+    output: &Path,
     session: &Session,
-) -> Result<Way, Failure> {
-    let Some(output) = &arguments.output else { return Ok(Way::Band) };
+) -> Result<(OffsetResult, f64), Failure> {
+    let staged = session.staging.stage(output)?;
+    let named = |error| of_output(error, output);
+    let stream = MeshStream::create(&staged, coordinates(arguments.more.f64)).map_err(named)?;
+    let mut sink = Streamed { stream, seconds: 0.0 };
+    let result =
+        offset_in_slabs(mesh, settings, Cut::Memory(memory), &mut sink, &session.run).map_err(|error| {
+            match error {
+                Error::Save(error) => of_output(error, output),
+                other => other.into(),
+            }
+        })?;
+    let started = Instant::now();
+    sink.stream.finish().map_err(named)?;
+    Ok((result, sink.seconds + started.elapsed().as_secs_f64()))
+}
+
+fn way(arguments: &OffsetArguments, output: &Path, session: &Session) -> Result<Way, Failure> {
     let in_pieces = matches!(format(output)?, Format::Ply | Format::Stl);
     let limit = session.max_memory;
     Ok(match (arguments.tile, arguments.stream) {
         (Some(tile), _) => Way::Tile(tile),
         (None, true) => Way::Slabs(limit.unwrap_or(STREAM_MEMORY)),
-        (None, false)
-            if in_pieces && check_memory(mesh, settings).is_err_and(|e| matches!(e, Error::Memory(_))) =>
-        {
-            match limit.or_else(available_memory) {
-                Some(memory) => Way::Slabs(memory),
-                None => Way::Whole,
-            }
+        (None, false) => {
+            Way::Whole { or_slabs: in_pieces.then(|| limit.or_else(available_memory)).flatten() }
         }
-        (None, false) => Way::Whole,
     })
 }
 

@@ -1,9 +1,10 @@
 //! An offset slab by slab: in less memory than the whole takes, or one share of it on a machine of its own.
 
+use super::memory::{MemoryError, check_countable, leaves_within};
 use super::on_slab::on_slab;
 use super::resolving::until_seen;
 use super::stored_band::StoredBand;
-use super::unsuitable::{EmptyResult, MemoryError, check_countable, leaves_within};
+use super::unsuitable::EmptyResult;
 use super::{OffsetResult, OffsetSettings, OffsetStatistics, Prepared};
 use crate::band::{BandSettings, count_layers};
 use crate::contour::{SlabContour, halo};

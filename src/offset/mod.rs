@@ -11,6 +11,7 @@
 
 pub(crate) mod narrow_band;
 mod in_slabs;
+mod memory;
 mod job;
 mod on_slab;
 mod resolving;
@@ -26,9 +27,10 @@ mod unsuitable;
 pub use crate::contour::Precision;
 pub use in_slabs::{Cut, PieceSink, offset_in_slabs};
 pub use job::job;
+pub use memory::{MemoryError, available_memory};
 pub use settings::{Length, OffsetSettings, SettingsError, SignMode, Tolerance, VoxelSize};
 pub use statistics::{EngineTimes, OffsetStatistics, VdbStatistics};
-pub use unsuitable::{EmptyResult, InputError, MemoryError, available_memory};
+pub use unsuitable::{EmptyResult, InputError};
 
 use crate::band::BandSettings;
 use crate::contour::SlabContour;
@@ -69,22 +71,13 @@ pub fn offset(mesh: &TriMesh, settings: &OffsetSettings, run: &RunSettings) -> R
     Prepared::with(mesh, settings, run, |prepared| {
         let stored = Wanted::by(settings);
         let fits = |band_settings: &BandSettings| {
-            unsuitable::check_memory(mesh, band_settings, stored, settings.max_memory).is_ok()
+            memory::check_memory(prepared.distance, band_settings, stored, settings.max_memory, run).is_ok()
         };
-        unsuitable::check_memory(mesh, &prepared.band_settings, stored, settings.max_memory)?;
+        memory::check_memory(prepared.distance, &prepared.band_settings, stored, settings.max_memory, run)?;
         until_seen(prepared, fits, |band_settings, times| {
             on_lattice(prepared.distance, settings, band_settings, times, run)
         })
     })
-}
-
-/// Checks, before any work, that all of an offset fits into the memory that the settings allow.
-///
-/// # Errors
-/// [`Error::Memory`] when it does not; [`Error::Settings`].
-pub fn check_memory(mesh: &TriMesh, settings: &OffsetSettings) -> Result<(), Error> {
-    let band_settings = settings.resolve(mesh)?;
-    Ok(unsuitable::check_memory(mesh, &band_settings, Wanted::by(settings), settings.max_memory)?)
 }
 
 /// The narrow band of an offset, in OpenVDB grids, and no mesh: no edge is intersected.
@@ -99,7 +92,7 @@ pub fn offset_band(
     Prepared::with(mesh, settings, run, |prepared| {
         let Prepared { distance, ref band_settings, times, .. } = *prepared;
         let stored = Wanted::by(&OffsetSettings { keep_band: true, ..settings.clone() });
-        unsuitable::check_memory(mesh, band_settings, stored, settings.max_memory)?;
+        memory::check_memory(distance, band_settings, stored, settings.max_memory, run)?;
         let mut statistics = OffsetStatistics::new(band_settings, times);
         let started = Instant::now();
         let mut stored = StoredBand::new(band_settings, settings)?;

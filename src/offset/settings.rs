@@ -72,7 +72,7 @@ pub struct OffsetSettings {
     /// How often the voxel size may be halved where the lattice does not see all of the surface
     /// ([`Unseen`](crate::unseen::Unseen)); 0 leaves it as it is. The whole lattice is refined.
     pub resolve: u32,
-    /// Refuse to start when the work would need more than about this many bytes; `None` for the memory
+    /// Refuse the lattice when the whole program would need more than about this many bytes; `None` for the memory
     /// that the system has available.
     pub max_memory: Option<u64>,
 }
