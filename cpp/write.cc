@@ -58,9 +58,9 @@ std::uint32_t flags(Codec codec)
     }
 }
 
-// The archive takes zip off the compression of every grid that says it is a level set or a fog volume, though readers take
-// each grid's compression from the file. It asks the grid itself, and then writes the metadata of a copy: so only the copy
-// says what this is.
+// The archive takes zip off the compression of every grid that says it is a level set or a fog volume, though
+// readers take each grid's compression from the file. It asks the grid itself, and then writes the metadata
+// of a copy: so only the copy says what this is.
 class Zipped : public openvdb::FloatGrid {
 public:
     explicit Zipped(const openvdb::FloatGrid& grid)

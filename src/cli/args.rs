@@ -106,7 +106,8 @@ pub(super) struct OffsetArguments {
     /// Make tile I of N only, for `exocarp merge` to join: several machines share one offset
     #[arg(long, value_name = "I/N", value_parser = tile, conflicts_with = "resolve")]
     pub tile: Option<TileNumber>,
-    /// Write the closest triangle of each voxel into the .vdb file, too, as a second grid; many programs cannot read that
+    /// Write the closest triangle of each voxel into the .vdb file, too, as a second grid; many programs
+    /// cannot read that
     #[arg(long, requires = "vdb")]
     pub closest: bool,
     #[command(flatten)]

@@ -39,8 +39,8 @@ Examples:
   exocarp thicken face.ply -t 1% --resolution 512 -o mask.ply   a finer lattice for wall and inner shell
   exocarp thicken closed.ply -t 1 -o shell.ply                  a closed mesh gets a cavity
 
-Every triangle of PATCH is in SOLID with the same coordinates, rounded to 32 bits where they have more; with --f64
-(PLY, OBJ, OFF) they stay as they are. The voxel size must be less than half of the thickness.";
+Every triangle of PATCH is in SOLID with the same coordinates, rounded to 32 bits where they have more; with
+--f64 (PLY, OBJ, OFF) they stay as they are. The voxel size must be less than half of the thickness.";
 
 pub(super) const COMPARE: &str = "\
 Examples:

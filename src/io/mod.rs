@@ -26,8 +26,8 @@
 //! - [`save`] replaces an existing file whole and only when the new one is complete: the content goes to a
 //!   temporary file beside it, which is renamed. A failure leaves the old file and no other.
 //! - A mesh that was saved loads again with the same triangles and the same coordinates: those of the mesh
-//!   rounded to f32, or as they are with [`Coordinates::F64`], which STL has not. So do text formats: readers of
-//!   32 and of 64 bits get the same numbers.
+//!   rounded to f32, or as they are with [`Coordinates::F64`], which STL has not. So do text formats: readers
+//!   of 32 and of 64 bits get the same numbers.
 
 pub(crate) mod atomic;
 mod error;
@@ -130,8 +130,8 @@ impl Coordinates {
 /// How a mesh is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SaveOptions {
-    /// The number type of coordinates. STL knows single precision only. In text (OBJ, OFF) there are as many digits
-    /// as a reader of 64 bits needs to get exactly that number.
+    /// The number type of coordinates. STL knows single precision only. In text (OBJ, OFF) there are as many
+    /// digits as a reader of 64 bits needs to get exactly that number.
     pub coordinates: Coordinates,
 }
 

@@ -261,8 +261,8 @@ pub(super) fn parse<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// Writes the shortest text that reads back as `x`. If `x` is exactly an f32, it reads back as that into an f32, too, but the
-/// shortest text of the f32 would not do: it is another number for those who read 64 bits.
+/// Writes the shortest text that reads back as `x`. If `x` is exactly an f32, it reads back as that into an
+/// f32, too, but the shortest text of the f32 would not do: it is another number for those who read 64 bits.
 pub(super) fn write_number(x: f64, writer: &mut impl Write) -> std::io::Result<()> {
     // Outside of this range the plain notation is longer than the one with an exponent.
     let is_plain = x == 0.0 || (1e-5..1e16).contains(&x.abs());

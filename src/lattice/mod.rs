@@ -104,9 +104,10 @@ pub struct Lattice {
     pub voxel: f64,
 }
 
-/// How much larger than half width times voxel size a background is at least: by two units in the last place of an f32.
-/// Then neither the voxel size rounded to f32 nor a division or product rounded to it makes fewer voxels of the background:
-/// these are off by a quarter of that each. Much more, and nodes farther out would be in the band.
+/// How much larger than half width times voxel size a background is at least: by two units in the last place
+/// of an f32. Then neither the voxel size rounded to f32 nor a division or product rounded to it makes fewer
+/// voxels of the background: these are off by a quarter of that each. Much more, and nodes farther out would
+/// be in the band.
 const HAIR: f64 = 1.0 + 2.0 * f32::EPSILON as f64;
 
 impl Lattice {
@@ -115,8 +116,9 @@ impl Lattice {
         self.voxel * f64::from(i)
     }
 
-    /// The value of nodes outside a band of `half_width` voxels, as stored: a hair above their product, in model units.
-    /// Other programs count the voxels back, in 32 or 64 bits, and take what is less than three for no level set.
+    /// The value of nodes outside a band of `half_width` voxels, as stored: a hair above their product, in
+    /// model units. Other programs count the voxels back, in 32 or 64 bits, and take what is less than three
+    /// for no level set.
     pub fn background(&self, half_width: f64) -> f32 {
         let least = half_width * self.voxel * HAIR;
         let background = least as f32;

@@ -1,13 +1,14 @@
 //! What tells the tiles of one offset from those of another: a number made of the input and the settings.
 //!
-//! Machines that share nothing compare it, so it must be the same whatever compiler made the program, and whatever
-//! the fields and types are called in the code. So each setting goes in under a name and as bytes that are written down here.
+//! Machines that share nothing compare it, so it must be the same whatever compiler made the program, and
+//! whatever the fields and types are called in the code. So each setting goes in under a name and as bytes
+//! that are written down here.
 
 use super::{Length, OffsetSettings, Precision, SignMode, Tolerance, VoxelSize};
 use crate::mesh::TriMesh;
 
-/// Identifies the offset of `mesh` with these settings, as this version of exocarp makes it: two offsets with the same
-/// number are the same to the last bit.
+/// Identifies the offset of `mesh` with these settings, as this version of exocarp makes it: two offsets with
+/// the same number are the same to the last bit.
 ///
 /// Memory is left out, because it changes nothing of the result, and so is which grids are kept of the band.
 pub fn job(mesh: &TriMesh, settings: &OffsetSettings) -> u64 {
@@ -66,7 +67,8 @@ fn of_version(version: &str, mesh: &TriMesh, settings: &OffsetSettings) -> u64 {
     hash.state
 }
 
-/// The hash FNV-1a of 64 bits (Fowler, Noll, Vo): it is defined by two constants, and quick enough for meshes.
+/// The hash FNV-1a of 64 bits (Fowler, Noll, Vo): it is defined by two constants, and quick enough for
+/// meshes.
 struct Fnv1a {
     state: u64,
 }

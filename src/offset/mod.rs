@@ -50,7 +50,8 @@ use stored_band::{StoredBand, Wanted};
 pub struct OffsetResult {
     /// The offset surface: closed, 2-manifold, free of intersections.
     pub mesh: TriMesh,
-    /// The narrow band, in OpenVDB grids, where it was to be kept: phi, and the closest triangles where they were, too.
+    /// The narrow band, in OpenVDB grids, where it was to be kept: phi, and the closest triangles where they
+    /// were, too.
     pub band: Option<Band>,
     /// What happened on the way.
     pub statistics: OffsetStatistics,

@@ -60,8 +60,8 @@ pub struct OffsetSettings {
     pub half_width: f64,
     /// Keep the narrow band, in OpenVDB grids. Without, it is gone when the mesh is done.
     pub keep_band: bool,
-    /// Keep with the band, where it is kept, the closest triangle of each of its voxels: a second grid, of integers, which
-    /// many programs cannot read. Without, no closest triangles are stored.
+    /// Keep with the band, where it is kept, the closest triangle of each of its voxels: a second grid, of
+    /// integers, which many programs cannot read. Without, no closest triangles are stored.
     pub keep_closest: bool,
     /// Coordinates of the result.
     pub precision: Precision,

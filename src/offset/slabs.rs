@@ -14,8 +14,9 @@ fn slabs(layers: &Layers, halo: i32, ends: &[usize]) -> Vec<Slab> {
     starts.zip(ends).map(|(start, &end)| Slab::new(plane(start), plane(end), halo)).collect()
 }
 
-/// `count` slabs with about the same share of the surface each. Where there are fewer layers than slabs, some own nothing;
-/// where there are none, the first one owns everything: the sign may still jump where no surface is.
+/// `count` slabs with about the same share of the surface each. Where there are fewer layers than slabs, some
+/// own nothing; where there are none, the first one owns everything: the sign may still jump where no surface
+/// is.
 pub(super) fn in_shares(layers: &Layers, halo: i32, count: u32) -> Vec<Slab> {
     if layers.leaves.is_empty() {
         let nothing = Slab::new(i32::MAX, i32::MAX, halo);

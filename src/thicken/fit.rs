@@ -142,8 +142,8 @@ impl Around<'_> {
     }
 }
 
-/// Of the triangles of the strip at each edge that more than two of them have, the costliest one. A loop that comes through a
-/// vertex twice can lead to that: triangles that share an edge need not meet anywhere else.
+/// Of the triangles of the strip at each edge that more than two of them have, the costliest one. A loop that
+/// comes through a vertex twice can lead to that: triangles that share an edge need not meet anywhere else.
 fn costliest_at_edges(
     triangles: &[[u32; 3]],
     steps: &[(usize, Step)],

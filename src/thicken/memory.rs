@@ -7,17 +7,18 @@ use crate::offset::{MemoryError, available_memory};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Bytes per h^2 of the patch: nodes beside it, crossings, contour, strips, shape processing. Measured as peak memory on patches of
-/// 98 and 2,048 triangles at 80,000 to 700,000 cells and 4 to 12 voxels of thickness: 410 for plane ones, 1,074 at most
-/// for wavy ones.
+/// Bytes per h^2 of the patch: nodes beside it, crossings, contour, strips, shape processing. Measured as
+/// peak memory on patches of 98 and 2,048 triangles at 80,000 to 700,000 cells and 4 to 12 voxels of
+/// thickness: 410 for plane ones, 1,074 at most for wavy ones.
 const BYTES_PER_CELL: f64 = 1100.0;
 
-/// Bytes per node within the thickness of the patch, where that is many voxels: its closest triangle, and bits. Measured as 9.4 to
-/// 10.6 at a thickness of 200 and 286 voxels.
+/// Bytes per node within the thickness of the patch, where that is many voxels: its closest triangle, and
+/// bits. Measured as 9.4 to 10.6 at a thickness of 200 and 286 voxels.
 const BYTES_PER_NODE: f64 = 12.0;
 
-/// Bytes per triangle of the patch: topology, hierarchy, pseudonormals, exact tests, and lists where triangles are smaller than
-/// voxels. Measured as 1,500 to 1,750 on patches of 17,000 and 52,000 triangles at 40 voxels.
+/// Bytes per triangle of the patch: topology, hierarchy, pseudonormals, exact tests, and lists where
+/// triangles are smaller than voxels. Measured as 1,500 to 1,750 on patches of 17,000 and 52,000 triangles at
+/// 40 voxels.
 const BYTES_PER_TRIANGLE: f64 = 1800.0;
 
 /// Checks that a lattice fits into `max_memory`, or what the system has available.
@@ -42,11 +43,12 @@ pub(super) fn check(
     Err(MemoryError { voxel, needed: needed as u64, allowed, smallest_voxel })
 }
 
-/// The area of the solid's boundary along patch and wall, and the volume of the points within `r` of the patch on one of its
-/// sides. Points beyond the boundary of the patch are not in the solid, but who they are closest to has to be found out.
+/// The area of the solid's boundary along patch and wall, and the volume of the points within `r` of the
+/// patch on one of its sides. Points beyond the boundary of the patch are not in the solid, but who they are
+/// closest to has to be found out.
 ///
-/// That volume is half of what Steiner's formula says of a flat convex patch: a prism, quarters of a cylinder along the boundary and
-/// half of a ball at its corners.
+/// That volume is half of what Steiner's formula says of a flat convex patch: a prism, quarters of a cylinder
+/// along the boundary and half of a ball at its corners.
 fn sizes(patch: &TriMesh, boundary: &Boundary, r: f64) -> [f64; 2] {
     let area = measure::area(patch);
     let corner = |v: u32| DVec3::from(patch.vertices[v as usize]);

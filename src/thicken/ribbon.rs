@@ -62,9 +62,10 @@ const RUNG: f64 = 0.2;
 /// What a fold counts, beside the area of the triangles at it: more than any detour.
 const FOLD: f64 = 30.0;
 
-/// What a path must have done before its end, a bit each: a step along the boundary from a rung to another vertex of the rim
-/// than its first one, and the other way round. One that has not has all steps along the rim at a single vertex of the boundary,
-/// or the other way round, and comes to the first rung there once more at the end: four triangles at one edge.
+/// What a path must have done before its end, a bit each: a step along the boundary from a rung to another
+/// vertex of the rim than its first one, and the other way round. One that has not has all steps along the
+/// rim at a single vertex of the boundary, or the other way round, and comes to the first rung there once
+/// more at the end: four triangles at one edge.
 const TURNED: usize = 0b11;
 
 impl Ribbon {
@@ -84,8 +85,8 @@ impl Ribbon {
         }
     }
 
-    /// The cheapest path among those that turn. It takes four times as long, and is seldom needed: where the boundary is small
-    /// beside the rim's edges, or the rim beside the boundary's.
+    /// The cheapest path among those that turn. It takes four times as long, and is seldom needed: where the
+    /// boundary is small beside the rim's edges, or the rim beside the boundary's.
     fn cheapest_turning(&self) -> Option<Vec<Step>> {
         let (n, m) = (self.boundary.points.len() as u32, self.rim.points.len() as u32);
         let rows = self.rows();

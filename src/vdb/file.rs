@@ -13,9 +13,10 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// How the values in a file are compressed. In all cases inactive values are left out, since a level set
-/// has two of them only. Bands of 2% at 256 voxels, in MB, without compression, with Zip and with Blosc: fandisk 4.28,
-/// 3.01, 2.86; armadillo 3.99, 3.95, 3.81. Values are distances, whose last digits are noise unless surfaces are plane.
+/// How the values in a file are compressed. In all cases inactive values are left out, since a level set has
+/// two of them only. Bands of 2% at 256 voxels, in MB, without compression, with Zip and with Blosc: fandisk
+/// 4.28, 3.01, 2.86; armadillo 3.99, 3.95, 3.81. Values are distances, whose last digits are noise unless
+/// surfaces are plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Compression {
     /// Blosc: small and quick. Few readers lack it.
@@ -67,9 +68,9 @@ pub struct VdbOptions {
     pub metadata: Vec<(String, MetaValue)>,
 }
 
-/// Writes a level set to exactly `path`: one grid, which every OpenVDB program reads. With the closest triangles there are
-/// two, and programs that know no grids of integers refuse the file (some builds of OpenVDB's Python module) or the second
-/// grid.
+/// Writes a level set to exactly `path`: one grid, which every OpenVDB program reads. With the closest
+/// triangles there are two, and programs that know no grids of integers refuse the file (some builds of
+/// OpenVDB's Python module) or the second grid.
 ///
 /// An existing file is overwritten in place, and a failure leaves a part of the new one: callers write
 /// to a temporary name and rename.
@@ -135,8 +136,8 @@ pub fn open_surface(path: &Path, name: Option<&str>) -> Result<SurfaceGrid, VdbE
     }
 }
 
-/// Opens the grid of closest triangles `name`; without a name the grid `surface_closest`, or else the only grid of
-/// 32-bit integers.
+/// Opens the grid of closest triangles `name`; without a name the grid `surface_closest`, or else the only
+/// grid of 32-bit integers.
 ///
 /// # Errors
 /// If the file cannot be read or has no such grid.

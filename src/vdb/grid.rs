@@ -7,8 +7,8 @@ use crate::band::{Ijk, LEAF_DIM, Lattice, LeafMask};
 use crate::run::RunSettings;
 use cxx::UniquePtr;
 
-/// The name of the grid of closest triangles. After `surface` in the alphabet: OpenVDB lists the grids of a file by their
-/// names, whatever their order in it, and many programs take the first one.
+/// The name of the grid of closest triangles. After `surface` in the alphabet: OpenVDB lists the grids of a
+/// file by their names, whatever their order in it, and many programs take the first one.
 pub(super) const CLOSEST: &str = "surface_closest";
 
 /// Who made a grid, as other programs show it.
@@ -37,8 +37,8 @@ pub struct ClosestGrid {
 pub struct Band {
     /// The level set.
     pub surface: SurfaceGrid,
-    /// The closest triangles, leaf by leaf those of the surface, where they were asked for. A file from another program has
-    /// none.
+    /// The closest triangles, leaf by leaf those of the surface, where they were asked for. A file from
+    /// another program has none.
     pub closest: Option<ClosestGrid>,
 }
 
@@ -376,7 +376,8 @@ mod tests {
     fn check_background(voxel: f64, half_width: f64) {
         let background = Lattice { voxel }.background(half_width);
         let what = format!("{voxel:e} {half_width}");
-        // As checkLevelSet computes it, and so that a voxel size that went through a product or two does no harm.
+        // As checkLevelSet computes it, and so that a voxel size that went through a product or two does no
+        // harm.
         assert!(f64::from(background) / voxel >= half_width * (1.0 + 1e-15), "{what}");
         let (single, voxel_f32) = (half_width as f32, voxel as f32);
         assert!(background / voxel_f32 >= single, "{what}");

@@ -6,12 +6,12 @@
 //! ```text
 //!  active voxels    exactly those with abs(phi) < background
 //!  inactive values  exactly +background (outside) or -background (inside), in leaves and tiles
-//!  background       a hair above half width * h: checkLevelSet wants 3 h at least, and no rounding undercuts that
+//!  background       a hair above half width * h: checkLevelSet wants 3 h at least, whoever rounds
 //! ```
 //!
-//! phi is in model units, negative inside, and never 0. [`SurfaceGrid::check_level_set`] runs OpenVDB's
-//! own nine tests. A [`ClosestGrid`] of the same leaves holds the ids of the closest triangles, where they were asked
-//! for.
+//! phi is in model units, negative inside, and never 0. [`SurfaceGrid::check_level_set`] runs OpenVDB's own
+//! nine tests. A [`ClosestGrid`] of the same leaves holds the ids of the closest triangles, where they were
+//! asked for.
 //!
 //! Leaves go in and out in batches, as flat slices; [`write()`] and [`open_surface`] are the files. The
 //! same grids and options give the same bytes.

@@ -3,8 +3,8 @@
 usage: test_vdb.py FILE.vdb (--sphere RADIUS | --nodes FILE) --voxel H --half-width W --active N [--two-grids]
 
 The file holds the level set of a sphere around the world origin, or one whose exact values at some nodes
-are given, a line "i j k phi" each. It is the only grid unless there are two. Exits with an AssertionError that says
-what is wrong.
+are given, a line "i j k phi" each. It is the only grid unless there are two. Exits with
+an AssertionError that says what is wrong.
 """
 
 import argparse
@@ -42,8 +42,8 @@ def check_header(path, grid, args):
 
 
 def read_surface(path, two_grids):
-    """The level set, by way of all that the file holds. The module knows no grids of integers: with one in the file it
-    finds the level set by its name only."""
+    """The level set, by way of all that the file holds. The module knows no grids of integers: with one in the
+    file it finds the level set by its name only."""
     if two_grids:
         return vdb.read(path, "surface")
     names = [grid.name for grid in vdb.readAllGridMetadata(path)]

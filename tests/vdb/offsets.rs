@@ -55,7 +55,8 @@ fn all_offsets_pass_the_checks_but_the_gradient_at_creases() {
 
 #[test]
 fn bands_are_level_sets_at_every_voxel_size() {
-    // A box whose faces lie in planes of nodes, so that many nodes are at exactly three voxels; and one that is turned.
+    // A box whose faces lie in planes of nodes, so that many nodes are at exactly three voxels; and one that
+    // is turned.
     let turned = |mut mesh: TriMesh| {
         let rotation = glam::DQuat::from_axis_angle(glam::DVec3::new(1.0, 2.0, -0.5).normalize(), 0.7);
         mesh.vertices.iter_mut().for_each(|v| *v = (rotation * glam::DVec3::from(*v)).to_array());
