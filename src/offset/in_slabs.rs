@@ -105,7 +105,7 @@ fn cut_slabs(prepared: &Prepared<'_>, settings: &BandSettings, cut: Cut) -> Resu
     let halo = halo(&prepared.settings.contour(settings.lattice));
     let layers = count_layers(distance, settings, run)?;
     Ok(match cut {
-        Cut::Tile { number, of } => vec![super::slabs::in_shares(&layers, halo, of)[number as usize - 1]],
+        Cut::Tile { number, of } => vec![super::slabs::share(&layers, halo, number, of)],
         // Nothing to see there, and that is said.
         Cut::Memory(_) if layers.leaves.is_empty() => vec![Slab::WHOLE],
         Cut::Memory(bytes) => {

@@ -75,6 +75,7 @@ pub fn offset(mesh: &TriMesh, settings: &OffsetSettings, run: &RunSettings) -> R
             memory::check_memory(prepared.distance, band_settings, stored, settings.max_memory, run).is_ok()
         };
         memory::check_memory(prepared.distance, &prepared.band_settings, stored, settings.max_memory, run)?;
+        memory::check_countable(mesh, &prepared.band_settings)?;
         until_seen(prepared, fits, |band_settings, times| {
             on_lattice(prepared.distance, settings, band_settings, times, run)
         })

@@ -109,6 +109,19 @@ pub enum SettingsError {
     /// The tolerance is zero, negative, infinite or not a number.
     #[error("the tolerance must be a positive number, not {0}")]
     Tolerance(f64),
+    /// The tolerance is less than what coordinates can hold.
+    #[error(
+        "the tolerance {tolerance:.3e} is finer than coordinates of {bits} bits are at the far end of the result; \
+         choose one of at least {smallest:.3e}, or move the model towards the origin"
+    )]
+    FineTolerance {
+        /// The tolerance in model units.
+        tolerance: f64,
+        /// The bits of a coordinate.
+        bits: u32,
+        /// The smallest tolerance in model units that is taken.
+        smallest: f64,
+    },
     /// The half-width is out of range.
     #[error("the half-width must be 1 to 1000 voxels, not {0}")]
     HalfWidth(f64),
@@ -135,6 +148,10 @@ pub enum SettingsError {
 
 /// The largest lattice index: a leaf or a bounding box beyond it must still fit into an i32.
 const LARGEST_INDEX: f64 = (1 << 30) as f64;
+
+/// Steps of 64-bit coordinates that a tolerance spans at least: distances are computed in as many bits, and
+/// lose some. Below, all triangles are split as often as they may be, plane ones too, and none comes nearer.
+const STEPS_OF_F64: f64 = 8.0;
 
 impl OffsetSettings {
     /// Checks what can be checked without a mesh.
@@ -189,7 +206,7 @@ impl OffsetSettings {
         Ok(band)
     }
 
-    /// Checks that the lattice's indices are in range.
+    /// Checks that the lattice's indices are in range, and the tolerance is one that coordinates can keep.
     pub(super) fn check_range(&self, mesh: &TriMesh, band: &BandSettings) -> Result<(), SettingsError> {
         let bounds = Aabb::around(mesh.vertices.iter().map(|&v| DVec3::from(v)));
         let (voxel, r) = (band.lattice.voxel, band.r);
@@ -203,7 +220,20 @@ impl OffsetSettings {
         if farthest / voxel > LARGEST_INDEX {
             return Err(SettingsError::Range { voxel, smallest: farthest / LARGEST_INDEX });
         }
-        Ok(())
+        let (bits, step) = match self.precision {
+            Precision::F32 => (32, f64::from(f32::EPSILON)),
+            Precision::F64 => (64, STEPS_OF_F64 * f64::EPSILON),
+        };
+        let smallest = step * farthest;
+        match self.tolerance {
+            Some(Tolerance::Units(tolerance)) if tolerance < smallest => {
+                Err(SettingsError::FineTolerance { tolerance, bits, smallest })
+            }
+            Some(Tolerance::Voxels(t)) if t * voxel < smallest => {
+                Err(SettingsError::FineTolerance { tolerance: t * voxel, bits, smallest })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The settings of the contour on a lattice.

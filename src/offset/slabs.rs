@@ -3,38 +3,40 @@
 use crate::band::{LEAF_DIM, Layers};
 use crate::slab::Slab;
 
-/// The layers of leaves, as slabs. The first and the last reach beyond all layers, so that everything has an owner.
-fn slabs(layers: &Layers, halo: i32, ends: &[usize]) -> Vec<Slab> {
+/// The layers `start` to `end`, as a slab. The first and the last reach beyond all layers, so that everything
+/// has an owner.
+fn slab(layers: &Layers, halo: i32, start: usize, end: usize) -> Slab {
     let plane = |layer: usize| match layer {
         0 => i32::MIN,
         n if n >= layers.leaves.len() => i32::MAX,
         n => layers.first + LEAF_DIM * n as i32,
     };
-    let starts = std::iter::once(0).chain(ends.iter().copied());
-    starts.zip(ends).map(|(start, &end)| Slab::new(plane(start), plane(end), halo)).collect()
+    Slab::new(plane(start), plane(end), halo)
 }
 
-/// `count` slabs with about the same share of the surface each. Where there are fewer layers than slabs, some
-/// own nothing; where there are none, the first one owns everything: the sign may still jump where no surface
-/// is.
-pub(super) fn in_shares(layers: &Layers, halo: i32, count: u32) -> Vec<Slab> {
+/// Slab `number`, from 1, of `count` slabs with about the same share of the surface each. Where there are
+/// fewer layers than slabs, some own nothing; where there are none, the first one owns everything: the sign
+/// may still jump where no surface is.
+pub(super) fn share(layers: &Layers, halo: i32, number: u32, count: u32) -> Slab {
     if layers.leaves.is_empty() {
-        let nothing = Slab::new(i32::MAX, i32::MAX, halo);
-        return std::iter::once(Slab::WHOLE).chain((1..count).map(|_| nothing)).collect();
+        return if number == 1 { Slab::WHOLE } else { Slab::new(i32::MAX, i32::MAX, halo) };
     }
-    let total = layers.total();
-    let mut ends = Vec::with_capacity(count as usize);
-    let (mut sum, mut end) = (0, 0);
-    for n in 1..=u64::from(count) {
-        // A layer goes to the share that its middle is in.
-        while end < layers.leaves.len() && (2 * sum + layers.leaves[end]) * u64::from(count) <= 2 * n * total
-        {
-            sum += layers.leaves[end];
-            end += 1;
+    let [total, count] = [layers.total(), count.into()].map(u128::from);
+    // Where share n ends: a layer goes to the share that its middle is in.
+    let end = |n: u32| {
+        let (n, mut sum) = (u128::from(n), 0);
+        if n == count {
+            return layers.leaves.len();
         }
-        ends.push(if n == u64::from(count) { layers.leaves.len() } else { end });
-    }
-    slabs(layers, halo, &ends)
+        let is_in = |leaves: &&u64| {
+            let leaves = u128::from(**leaves);
+            let middle = 2 * sum + leaves;
+            sum += leaves;
+            middle * count <= 2 * n * total
+        };
+        layers.leaves.iter().take_while(is_in).count()
+    };
+    slab(layers, halo, end(number - 1), end(number))
 }
 
 /// As few slabs as possible with at most `most` leaves each, halo included. Fails with the leaves of the fullest layer
@@ -49,17 +51,17 @@ pub(super) fn within(layers: &Layers, halo: i32, most: u64) -> Result<Vec<Slab>,
     if least > most {
         return Err(least);
     }
-    let mut ends = Vec::new();
+    let mut slabs = Vec::new();
     let mut start = 0;
     while start < count {
         let mut end = start + 1;
         while end < count && computed(start, end + 1) <= most {
             end += 1;
         }
-        ends.push(end);
+        slabs.push(slab(layers, halo, start, end));
         start = end;
     }
-    Ok(slabs(layers, halo, &ends))
+    Ok(slabs)
 }
 
 #[cfg(test)]
@@ -81,6 +83,10 @@ mod tests {
         slabs.iter().map(of).collect()
     }
 
+    fn in_shares(layers: &Layers, halo: i32, count: u32) -> Vec<Slab> {
+        (1..=count).map(|number| share(layers, halo, number, count)).collect()
+    }
+
     #[test]
     fn shares_are_balanced_and_whole() {
         let even = layers(&[10; 12]);
@@ -98,6 +104,11 @@ mod tests {
             assert_eq!(slabs.iter().filter(|slab| slab.owns(Ijk::new(x, 0, 0))).count(), 1, "{x}");
         }
         assert!(slabs[1..].iter().all(|slab| !slab.computes(Ijk::new(1 << 30, 0, 0), 1 << 20)));
+        // As many as can be numbered, of as many leaves as there can be.
+        let many = layers(&[1 << 40, 1 << 40]);
+        for (number, leaves) in [(1, 0), (1 << 30, 1 << 40), (u32::MAX, 0)] {
+            assert_eq!(owned(&many, &[share(&many, 16, number, u32::MAX)]), [leaves], "{number}");
+        }
     }
 
     #[test]
