@@ -36,7 +36,9 @@ pub use report::{
     MissingReport, Promise, ShellReport, Size, Soundness, Statistics, Thickness, TopologyReport,
     VerifyReport,
 };
-pub use settings::{DEFAULT_SAMPLES, DEFAULT_SEED, Subject, VerifyError, VerifySettings, Which};
+pub use settings::{
+    DEFAULT_SAMPLES, DEFAULT_SEED, MOST_SAMPLES, Subject, VerifyError, VerifySettings, Which,
+};
 
 use crate::error::Error;
 use crate::mesh::TriMesh;

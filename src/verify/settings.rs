@@ -10,6 +10,9 @@ pub const DEFAULT_SEED: u64 = 1;
 /// spread. Ten times as many would take most of the time.
 pub const DEFAULT_SAMPLES: usize = 200_000;
 
+/// The most samples: they take about 90 bytes each, and the mean of an error is known to 0.03% of its spread.
+pub const MOST_SAMPLES: usize = 20_000_000;
+
 /// What to judge OUTPUT by.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VerifySettings {
@@ -20,7 +23,7 @@ pub struct VerifySettings {
     pub voxel: Option<f64>,
     /// The largest error allowed in model units, either way; `None` promises nothing about distances.
     pub tolerance: Option<f64>,
-    /// Area-uniform samples on OUTPUT, and on INPUT for what is missing. At least 1.
+    /// Area-uniform samples on OUTPUT, and on INPUT for what is missing: 1 to [`MOST_SAMPLES`].
     pub samples: usize,
     /// Seed of the samples. The same seed gives the same report, for every number of threads.
     pub seed: u64,
@@ -128,6 +131,7 @@ impl VerifySettings {
         }
         let angle = self.crease_angle;
         check(angle > 0.0 && angle < 180.0, "crease angle", "between 0 and 180 degrees", angle)?;
-        check(self.samples > 0, "number of samples", "at least 1", self.samples as f64)
+        let in_range = (1..=MOST_SAMPLES).contains(&self.samples);
+        check(in_range, "number of samples", "1 to 20 million", self.samples as f64)
     }
 }
