@@ -2,7 +2,9 @@
 //!
 //! While they are written they lie in a hidden directory beside their targets, under their own names; only
 //! when all of them are complete they are renamed into place. So a run that fails or is interrupted leaves
-//! what was there before, and never a mesh without the statistics that belong to it.
+//! what was there before, and never a mesh without the statistics that belong to it. A file that is replaced
+//! hands on its permissions, also where it may only be read: that a directory may be written to is what
+//! counts.
 
 use super::exit::{Exit, Failure, of_io};
 use exocarp::run::CancelToken;
@@ -35,8 +37,7 @@ impl Staging {
     pub fn stage(&self, target: &Path) -> Result<PathBuf, Failure> {
         let target = resolved(target);
         let cannot = |e| cannot_write(&target, &e, of_io(&e));
-        let directory =
-            tempfile::Builder::new().prefix(".exocarp-").tempdir_in(parent(&target)).map_err(cannot)?;
+        let directory = staging_directory(&parent(&target)).map_err(cannot)?;
         let path = directory.path().join(target.file_name().unwrap_or_default());
         let mut state = self.lock();
         state.directories.push(directory);
@@ -50,7 +51,8 @@ impl Staging {
         let mut state = self.lock();
         self.cancel.check()?;
         for (from, to) in std::mem::take(&mut state.files) {
-            std::fs::rename(&from, &to).map_err(|e| cannot_write(&to, &e, of_io(&e)))?;
+            let replaced = keep_permissions(&from, &to).and_then(|()| std::fs::rename(&from, &to));
+            replaced.map_err(|e| cannot_write(&to, &e, of_io(&e)))?;
         }
         state.directories.clear();
         Ok(())
@@ -80,8 +82,17 @@ impl Staging {
 pub(super) fn check<'a>(targets: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
     let mut seen: Vec<PathBuf> = Vec::new();
     for path in targets {
-        let target = resolved(path);
         let shown = path.display();
+        if path == Path::new("-") {
+            return Err(Failure::usage("standard output takes no files; name one (./- if - is its name)"));
+        }
+        // Paths lose a slash at their end in all that follows.
+        if names_a_directory(path) {
+            return Err(Failure::usage(format!(
+                "{shown} is the name of a directory; leave out what follows it"
+            )));
+        }
+        let target = resolved(path);
         if target.file_name().is_none() || target.is_dir() {
             return Err(Failure::usage(format!("{shown} is a directory; name a file in it")));
         }
@@ -93,11 +104,10 @@ pub(super) fn check<'a>(targets: impl IntoIterator<Item = &'a Path>) -> Result<(
             let missing = directory.display();
             return Err(Failure::usage(format!("{shown}: there is no directory {missing}; create it first")));
         }
-        // Only trying tells whether a file can be created there; it is gone again at once.
-        tempfile::Builder::new()
-            .prefix(".exocarp-")
-            .tempfile_in(&directory)
-            .map_err(|e| cannot_write(path, &e, Exit::Usage))?;
+        try_file(&directory, &target).map_err(|e| {
+            let exit = if of_io(&e) == Exit::Limit { Exit::Limit } else { Exit::Usage };
+            cannot_write(path, &e, exit)
+        })?;
         let whole =
             directory.canonicalize().unwrap_or(directory).join(target.file_name().unwrap_or_default());
         if seen.contains(&whole) {
@@ -106,6 +116,46 @@ pub(super) fn check<'a>(targets: impl IntoIterator<Item = &'a Path>) -> Result<(
             )));
         }
         seen.push(whole);
+    }
+    Ok(())
+}
+
+/// Only trying tells whether a file of that name can be created there; it is gone again at once.
+fn try_file(directory: &Path, target: &Path) -> std::io::Result<()> {
+    let name = target.file_name().unwrap_or_default();
+    // The name alone may be too long for the directory, and the whole path for the system.
+    if let Err(error) = std::fs::symlink_metadata(target)
+        && error.kind() != std::io::ErrorKind::NotFound
+    {
+        return Err(error);
+    }
+    let staged = staging_directory(directory)?;
+    std::fs::File::create_new(staged.path().join(name)).map(drop)
+}
+
+/// A new hidden directory beside the targets.
+fn staging_directory(directory: &Path) -> std::io::Result<TempDir> {
+    tempfile::Builder::new().prefix(".exocarp-").tempdir_in(directory)
+}
+
+/// Whether a path says that it is one of a directory: it ends in a slash, or in a dot behind one.
+fn names_a_directory(path: &Path) -> bool {
+    let bytes = path.as_os_str().as_encoded_bytes();
+    let is_separator = |byte: Option<&u8>| byte.is_some_and(|b| std::path::is_separator(char::from(*b)));
+    is_separator(bytes.last()) || bytes.strip_suffix(b".").is_some_and(|rest| is_separator(rest.last()))
+}
+
+/// Gives `new` the permissions of `old`, the file that it is to replace, if there is one: who may read and
+/// write it, not as whom it would run.
+fn keep_permissions(new: &Path, old: &Path) -> std::io::Result<()> {
+    #[cfg(unix)]
+    if let Ok(old) = std::fs::metadata(old) {
+        use std::os::unix::fs::PermissionsExt;
+        let mode = old.permissions().mode() & 0o777;
+        // Some file systems know no permissions, and refuse to set them.
+        if std::fs::metadata(new)?.permissions().mode() & 0o777 != mode {
+            std::fs::set_permissions(new, std::fs::Permissions::from_mode(mode))?;
+        }
     }
     Ok(())
 }
@@ -184,6 +234,44 @@ mod tests {
         assert_eq!(wrong(&[&a, &again]), Exit::Usage);
         check([a.as_path()]).unwrap();
         assert!(names(dir.path()).is_empty());
+    }
+
+    #[test]
+    fn names_of_directories_are_known() {
+        for name in ["o.ply/", "a/o.ply//", "o.ply/.", "./", "/"] {
+            assert!(names_a_directory(Path::new(name)), "{name}");
+            assert_eq!(check([Path::new(name)]).unwrap_err().exit, Exit::Usage, "{name}");
+        }
+        for name in ["o.ply", "./o.ply", "o.", "..ply", "a./b"] {
+            assert!(!names_a_directory(Path::new(name)), "{name}");
+        }
+    }
+
+    #[test]
+    fn names_that_no_file_can_have_are_found_out_beforehand() {
+        let dir = tempfile::tempdir().unwrap();
+        let failure = check([dir.path().join("a".repeat(300) + ".ply").as_path()]).unwrap_err();
+        assert_eq!(failure.exit, Exit::Usage);
+        assert_eq!(check([Path::new("-")]).unwrap_err().exit, Exit::Usage);
+        assert!(names(dir.path()).is_empty());
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_file_that_is_replaced_hands_on_its_permissions() {
+        use std::os::unix::fs::PermissionsExt;
+        let dir = tempfile::tempdir().unwrap();
+        for mode in [0o444, 0o600, 0o640, 0o666, 0o755] {
+            let path = dir.path().join(format!("{mode:o}.ply"));
+            fs::write(&path, "old").unwrap();
+            fs::set_permissions(&path, fs::Permissions::from_mode(mode)).unwrap();
+            let staging = Staging::new(CancelToken::default());
+            check([path.as_path()]).unwrap();
+            fs::write(staging.stage(&path).unwrap(), "new").unwrap();
+            staging.commit().unwrap();
+            assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+            assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o7777, mode);
+        }
     }
 
     #[test]

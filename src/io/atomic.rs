@@ -1,9 +1,10 @@
 //! Output files that appear whole or not at all.
 //!
-//! The content goes to a temporary file beside the target, which is renamed when complete. A failure, a
-//! panic or a cancelled run removes the temporary file and leaves an existing target as it was. The file
-//! gets the permissions of any new file (the umask decides). A symbolic link keeps pointing to its file,
-//! and that file is replaced. Not promised: that the content is on the disk after a loss of power.
+//! The content goes to a temporary file beside the target, which is renamed when complete. A failure, a panic
+//! or a cancelled run removes the temporary file and leaves an existing target as it was. The file gets the
+//! permissions of the one that it replaces, or else those of any new file (the umask decides). A symbolic
+//! link keeps pointing to its file, and that file is replaced. Not promised: that the content is on the disk
+//! after a loss of power.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -24,6 +25,7 @@ pub(crate) fn write_atomically(
     let mut writer = BufWriter::with_capacity(1 << 16, temporary.as_file_mut());
     write(&mut writer).and_then(|()| writer.flush()).map_err(|e| at(SaveProblem::Write(e)))?;
     drop(writer);
+    keep_permissions(temporary.path(), &target).map_err(|e| at(SaveProblem::Replace(e)))?;
     temporary.persist(&target).map_err(|e| at(SaveProblem::Replace(e.error)))?;
     Ok(())
 }
@@ -39,7 +41,23 @@ pub(crate) fn write_path_atomically<E: From<SaveError>>(
     let target = target(path);
     let temporary = create_beside(&target).map_err(|e| at(SaveProblem::Create(e)))?.into_temp_path();
     write(&temporary)?;
+    keep_permissions(&temporary, &target).map_err(|e| at(SaveProblem::Replace(e)))?;
     temporary.persist(&target).map_err(|e| at(SaveProblem::Replace(e.error)))?;
+    Ok(())
+}
+
+/// Gives `new` the permissions of `old`, the file that it is to replace, if there is one: who may read and
+/// write it, not as whom it would run.
+fn keep_permissions(new: &Path, old: &Path) -> std::io::Result<()> {
+    #[cfg(unix)]
+    if let Ok(old) = std::fs::metadata(old) {
+        use std::os::unix::fs::PermissionsExt;
+        let mode = old.permissions().mode() & 0o777;
+        // Some file systems know no permissions, and refuse to set them.
+        if std::fs::metadata(new)?.permissions().mode() & 0o777 != mode {
+            std::fs::set_permissions(new, std::fs::Permissions::from_mode(mode))?;
+        }
+    }
     Ok(())
 }
 
@@ -139,6 +157,16 @@ mod tests {
         write_atomically(&path, |_| Ok(())).unwrap();
         let permissions = |path| fs::metadata(path).unwrap().permissions();
         assert_eq!(permissions(&path), permissions(&plain));
+
+        // Those of a file that is replaced stay.
+        for mode in [0o444, 0o600] {
+            use std::os::unix::fs::PermissionsExt;
+            fs::set_permissions(&path, fs::Permissions::from_mode(mode)).unwrap();
+            write_atomically(&path, |_| Ok(())).unwrap();
+            assert_eq!(permissions(&path).mode() & 0o777, mode);
+            write_path_atomically::<SaveError>(&path, |_| Ok(())).unwrap();
+            assert_eq!(permissions(&path).mode() & 0o777, mode);
+        }
 
         let link = directory.path().join("link.ply");
         std::os::unix::fs::symlink(&path, &link).unwrap();
