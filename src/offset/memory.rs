@@ -41,7 +41,7 @@ impl MemoryError {
         let fixed = fixed_bytes(mesh);
         let needed = fixed + leaves * BYTES_PER_LEAF;
         // The leaves of a layer and its halo lie along curves: they double when the voxel size is halved.
-        let room = allowed.saturating_sub(fixed).max(allowed / 10);
+        let room = allowed.saturating_sub(fixed).max(allowed / 10).max(1);
         let smallest_voxel = voxel * (leaves * BYTES_PER_LEAF) as f64 / room as f64;
         MemoryError { voxel, needed, allowed, smallest_voxel }
     }
@@ -120,7 +120,7 @@ pub(super) fn check_memory(
     if needed <= allowed as f64 {
         return Ok(());
     }
-    let room = (allowed as f64 - fixed).max(0.1 * allowed as f64);
+    let room = (allowed as f64 - fixed).max(0.1 * allowed as f64).max(1.0);
     let smallest_voxel = voxel * (of_cells(cells) / room).sqrt();
     Err(MemoryError { voxel, needed: needed as u64, allowed, smallest_voxel }.into())
 }
