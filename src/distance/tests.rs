@@ -155,7 +155,7 @@ fn depth_of(mesh: &TriMesh, relative: f64) -> Depth {
 #[test]
 fn the_depth_of_plates_and_needles_is_bounded_in_a_bounded_search() {
     // Every part of a plate is as deep as any other: a search that has to look at all of it does not end.
-    for half in [[127.5, 138.5, 1.5], [100.0, 1e-3, 1e-3], [5.0, 4.0, 1e-9]] {
+    for half in [[127.5f64, 138.5, 1.5], [100.0, 1e-3, 1e-3], [5.0, 4.0, 1e-9]] {
         let thinnest = half[1].min(half[2]);
         let depth = depth_of(&cuboid(half, DVec3::ZERO), 1e-3);
         assert!(depth.at_least <= thinnest * (1.0 + 1e-12), "{half:?}: {depth:?}");

@@ -265,6 +265,21 @@ fn a_closed_mesh_that_intersects_itself_is_closed_at_jumps() {
 }
 
 #[test]
+fn the_two_sides_of_a_sheet_have_no_inside() {
+    let mut mesh = shapes::cube(2);
+    let other_side: Vec<[u32; 3]> = mesh.triangles.iter().map(|&[a, b, c]| [c, b, a]).collect();
+    mesh.triangles.extend(other_side);
+    for sign in [SignMode::Closed, SignMode::Pseudonormal] {
+        let error = offset(&mesh, &OffsetSettings { sign, ..settings(0.1, 0.1) }, &run(1)).unwrap_err();
+        assert!(matches!(error, Error::Input(InputError::Doubled { .. })), "{error}");
+    }
+    // One side more is a solid again, though edges have three triangles.
+    mesh.triangles.extend(shapes::cube(2).triangles);
+    let result = offset(&mesh, &settings(0.1, 0.1), &run(1));
+    assert!(!matches!(result, Err(Error::Input(InputError::Doubled { .. }))));
+}
+
+#[test]
 fn shrinking_beyond_everything_names_the_depth() {
     let error = offset(&shapes::cube(1), &settings(-1.5, 0.1), &run(1)).unwrap_err();
     let Error::Empty(EmptyResult::TooDeep { depth, .. }) = error else { panic!("{error}") };

@@ -15,6 +15,15 @@ pub enum InputError {
     /// A vertex or a triangle cannot be worked with.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// Each triangle has a twin that faces the other way.
+    #[error(
+        "each of the {triangles} triangles lies on another one that faces the other way, so nothing is inside; \
+         keep one of the two sides, and thicken that"
+    )]
+    Doubled {
+        /// The number of triangles.
+        triangles: usize,
+    },
     /// Edges with a single triangle.
     #[error(
         "the mesh is not closed: {count} boundary edges, the first from ({:.6}, {:.6}, {:.6}) to ({:.6}, \
@@ -52,6 +61,9 @@ pub(super) fn check_mesh(mesh: &TriMesh) -> Result<(), InputError> {
 
 /// Checks that the mesh is the boundary of a solid, where the sign needs that.
 pub(super) fn check_input(mesh: &TriMesh, topology: &Topology, sign: SignMode) -> Result<(), InputError> {
+    if topology.defects().non_manifold_edges > 0 && is_doubled(mesh) {
+        return Err(InputError::Doubled { triangles: mesh.triangles.len() });
+    }
     if sign == SignMode::Pseudonormal {
         return Ok(());
     }
@@ -64,6 +76,21 @@ pub(super) fn check_input(mesh: &TriMesh, topology: &Topology, sign: SignMode) -
         return Err(InputError::Misoriented { count: defects.misoriented_edges, first: ends(first) });
     }
     Ok(())
+}
+
+/// Whether each triangle has a twin that faces the other way: the two sides of a sheet, as chairs and leaves come.
+fn is_doubled(mesh: &TriMesh) -> bool {
+    // From its lowest vertex on, which leaves the two ways round apart.
+    let turned = |&[a, b, c]: &[u32; 3]| match a.min(b).min(c) {
+        least if least == a => [a, b, c],
+        least if least == b => [b, c, a],
+        _ => [c, a, b],
+    };
+    let mut there: Vec<[u32; 3]> = mesh.triangles.iter().map(turned).collect();
+    there.sort_unstable();
+    let mut twins: Vec<[u32; 3]> = there.iter().map(|&[a, b, c]| [a, c, b]).collect();
+    twins.sort_unstable();
+    there == twins
 }
 
 /// No grid edge crosses the offset surface.
