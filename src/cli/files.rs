@@ -22,6 +22,9 @@ pub(super) fn precision(f64: bool) -> Precision {
 }
 
 pub(super) fn format(output: &Path) -> Result<Format, Failure> {
+    if output == Path::new("-") {
+        return Err(Failure::usage("standard output takes no meshes; name a file"));
+    }
     Format::of(output).map_err(|e| Failure::usage(format!("{}: {e}", output.display())))
 }
 
@@ -54,9 +57,32 @@ pub(super) struct Loaded {
 
 /// Loads and cleans a mesh, and says how long both took.
 pub(super) fn load_mesh(path: &Path, session: &Session) -> Result<(Loaded, Loading), Failure> {
-    let (mesh, load) = session.phase(Phase::Load, || Ok(session.run.install(|| io::load(path))?))?;
+    let (mesh, load) = load_as_it_stands(path, session)?;
     let ((mesh, report), clean) = session.phase(Phase::Clean, || Ok(session.run.install(|| clean(mesh))))?;
     Ok((Loaded { mesh, report }, Loading { load, clean }))
+}
+
+/// Loads a mesh, warns of what was passed over in the file, and says how long it took.
+pub(super) fn load_as_it_stands(path: &Path, session: &Session) -> Result<(TriMesh, f64), Failure> {
+    let load = || Ok(session.run.install(|| io::load_with_notes(path))?);
+    let (io::Loaded { mesh, notes, .. }, seconds) = session.phase(Phase::Load, load)?;
+    for note in notes {
+        session.warn(&note.to_string());
+    }
+    Ok((mesh, seconds))
+}
+
+/// Refuses an input that is no file before it is opened: opening a pipe would wait for who writes to it.
+pub(super) fn check_input(path: &Path) -> Result<(), Failure> {
+    let refuse = |what: &str| {
+        Err(Failure::new(Exit::Input, format!("{}: {what}; save it as a file and name that", path.display())))
+    };
+    match std::fs::metadata(path) {
+        _ if path == Path::new("-") => refuse("standard input is not read"),
+        Ok(meta) if !meta.is_file() && !meta.is_dir() => refuse("this is a pipe or a device"),
+        // What is missing or a directory is found out where it is read.
+        _ => Ok(()),
+    }
 }
 
 /// Writes a mesh to where it will be put in place from.

@@ -2,7 +2,7 @@
 
 use super::args::InfoArguments;
 use super::exit::Failure;
-use super::files::load_mesh;
+use super::files::{check_input, load_mesh};
 use super::numbers::{grouped, short};
 use super::session::{Session, print};
 use super::statistics::MeshFacts;
@@ -15,6 +15,7 @@ use serde_json::{Value, json};
 pub(super) fn run(arguments: &InfoArguments, session: &Session) -> Result<(), Failure> {
     let is_vdb = arguments.file.extension().is_some_and(|e| e.eq_ignore_ascii_case("vdb"));
     let (text, json) = if is_vdb {
+        check_input(&arguments.file)?;
         let (info, _) = session.phase(Phase::Load, || Ok(vdb::info(&arguments.file)?))?;
         (vdb_text(&info), vdb_json(&info))
     } else {

@@ -2,7 +2,7 @@
 
 use super::args::MergeArguments;
 use super::exit::Failure;
-use super::files::is_vdb;
+use super::files::{check_input, is_vdb};
 use super::numbers::{counted, grouped};
 use super::outputs;
 use super::session::Session;
@@ -14,6 +14,7 @@ use std::path::Path;
 
 pub(super) fn run(arguments: &MergeArguments, session: &Session) -> Result<(), Failure> {
     let MergeArguments { tiles, output, .. } = arguments;
+    tiles.iter().try_for_each(|tile| check_input(tile))?;
     outputs::check([output.as_path()])?;
     let staged = session.staging.stage(output)?;
     let (what, _) = session.phase(Phase::Write, || {

@@ -1,6 +1,7 @@
 //! `--thickness-map`: a thickness for each vertex of the input file.
 
-use super::exit::{Exit, Failure, of_io};
+use super::exit::{Exit, Failure};
+use super::files::check_input;
 use exocarp::io;
 use exocarp::mesh::TriMesh;
 use std::collections::HashMap;
@@ -14,23 +15,26 @@ const PROPERTY: &str = "thickness";
 /// The map is the property `thickness` of the vertices of a PLY file, or text: numbers in the order of the file's vertices,
 /// separated by blanks or line ends; `#` begins a comment.
 pub(super) fn load(path: &Path, input: &Path, mesh: &TriMesh) -> Result<Vec<f64>, Failure> {
+    check_input(path)?;
     let shown = path.display();
     let is_ply = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("ply"));
     let values = if is_ply { property(path)? } else { text(path)? };
-    let raw = io::load(input)?;
-    if raw.vertices.len() != values.len() {
+    let io::Loaded { mesh: raw, left_out, .. } = io::load_with_notes(input)?;
+    let of_file = raw.vertices.len() + left_out.len();
+    if of_file != values.len() {
         return Err(Failure::new(
             Exit::Input,
             format!(
-                "{shown} has {} values, and {} has {} vertices: the map needs one for each",
+                "{shown} has {} values, and {} has {of_file} vertices: the map needs one for each",
                 values.len(),
                 input.display(),
-                raw.vertices.len()
             ),
         ));
     }
+    let mut left_out = left_out.into_iter().peekable();
+    let kept = (0..).zip(values).filter(|(v, _)| left_out.next_if_eq(v).is_none()).map(|(_, value)| value);
     // Cleaning drops and joins vertices, and moves none.
-    let of_point: HashMap<[u64; 3], f64> = raw.vertices.iter().map(key).zip(values).collect();
+    let of_point: HashMap<[u64; 3], f64> = raw.vertices.iter().map(key).zip(kept).collect();
     Ok(mesh.vertices.iter().map(|v| of_point.get(&key(v)).copied().unwrap_or(f64::NAN)).collect())
 }
 
@@ -53,8 +57,12 @@ fn property(path: &Path) -> Result<Vec<f64>, Failure> {
 
 fn text(path: &Path) -> Result<Vec<f64>, Failure> {
     let shown = path.display();
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| Failure::new(of_io(&error), format!("{shown} cannot be read ({error})")))?;
+    let text = std::fs::read_to_string(path).map_err(|error| {
+        Failure::new(
+            Exit::Input,
+            format!("{shown} cannot be read ({error}); check the path and the permissions"),
+        )
+    })?;
     let mut values = Vec::new();
     for (number, line) in (1..).zip(text.lines()) {
         for word in line.split('#').next().unwrap_or_default().split_whitespace() {

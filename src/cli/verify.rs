@@ -2,14 +2,12 @@
 
 use super::args::{Sign, VerifyArguments};
 use super::exit::{Exit, Failure};
-use super::files::{load_mesh, save_json};
+use super::files::{load_as_it_stands, load_mesh, save_json};
 use super::numbers::{grouped, short};
 use super::outputs;
 use super::session::Session;
-use exocarp::io;
 use exocarp::mesh::{Topology, TriMesh};
 use exocarp::offset::Length;
-use exocarp::run::Phase;
 use exocarp::verify::{
     IntersectionReport, ShellReport, Size, Statistics, Subject, TopologyReport, VerifyReport, VerifySettings,
     verify,
@@ -22,8 +20,7 @@ pub(super) fn run(arguments: &VerifyArguments, session: &Session) -> Result<(), 
     if arguments.sign == Sign::Closed {
         refuse_open(arguments, &input.mesh, session)?;
     }
-    let load = || Ok(session.run.install(|| io::load(&arguments.output))?);
-    let (output, _) = session.phase(Phase::Load, load)?;
+    let (output, _) = load_as_it_stands(&arguments.output, session)?;
     let settings = settings(arguments, &input.mesh);
     let report = verify(&input.mesh, &output, &settings, &session.run)?;
     if let Some(path) = &arguments.json {
