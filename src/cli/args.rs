@@ -1,7 +1,7 @@
 //! The arguments, their units and their help.
 
 use super::examples;
-use super::numbers::{bytes, length, resolution, tile, tolerance, voxel};
+use super::numbers::{bytes, length, resolution, threads, tile, tolerance, voxel};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use exocarp::compare::Method;
 use exocarp::offset::{Length, SignMode, Tolerance};
@@ -24,8 +24,8 @@ pub(super) struct Arguments {
 /// What every command takes.
 #[derive(Args, Debug)]
 pub(super) struct Common {
-    /// Number of worker threads [default: all cores]
-    #[arg(long, global = true, help_heading = "Everywhere", value_name = "N")]
+    /// Number of worker threads, up to 512 or the number of cores [default: all cores]
+    #[arg(long, global = true, help_heading = "Everywhere", value_name = "N", value_parser = threads)]
     pub threads: Option<NonZeroUsize>,
     /// Print nothing but errors
     #[arg(long, short, global = true, help_heading = "Everywhere", conflicts_with = "verbose")]
@@ -421,7 +421,7 @@ pub(super) struct VerifyArguments {
     /// offset surface, and the other way round
     #[arg(long, value_name = "E", value_parser = length, allow_negative_numbers = true)]
     pub tolerance: Option<Length>,
-    /// Samples, uniform over the area
+    /// Samples, uniform over the area, up to 20 million
     #[arg(long, value_name = "N", default_value_t = exocarp::verify::DEFAULT_SAMPLES)]
     pub samples: usize,
     /// Seed of the samples

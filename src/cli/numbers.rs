@@ -2,6 +2,7 @@
 
 use super::args::TileNumber;
 use exocarp::offset::{Length, Tolerance};
+use std::num::NonZeroUsize;
 
 /// A distance in model units, or with `%` of the diagonal.
 pub(super) fn length(text: &str) -> Result<Length, String> {
@@ -29,6 +30,15 @@ pub(super) fn tolerance(text: &str) -> Result<Tolerance, String> {
         t if t > 0.0 => Ok(unit(t)),
         _ => Err("a tolerance is positive".into()),
     }
+}
+
+/// A number of threads. Far more of them than cores are busy with one another: 1024 on two cores take twenty
+/// times as long as two, and 4096 take minutes of nothing else.
+pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    const MOST: usize = 512;
+    let most = std::thread::available_parallelism().map_or(MOST, |cores| cores.get().max(MOST));
+    let number = text.parse().ok().filter(|number: &NonZeroUsize| number.get() <= most);
+    number.ok_or_else(|| format!("a number of threads is 1 to {most}"))
 }
 
 /// A positive number of voxels.
@@ -130,6 +140,14 @@ mod tests {
             assert!(voxel(wrong).is_err(), "{wrong}");
         }
         assert!(resolution("0").is_err() && resolution("-3").is_err() && resolution("1.5").is_err());
+    }
+
+    #[test]
+    fn threads_are_a_few() {
+        assert_eq!(threads("512").map(NonZeroUsize::get), Ok(512));
+        for wrong in ["0", "-1", "4294967295", "18446744073709551616", "two", ""] {
+            assert!(threads(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]
