@@ -311,6 +311,29 @@ fn settings_that_make_no_sense_are_refused() {
 }
 
 #[test]
+fn a_tolerance_that_coordinates_cannot_keep_is_refused_with_one_that_they_can() {
+    let with =
+        |tolerance, precision| OffsetSettings { tolerance: Some(tolerance), precision, ..settings(0.1, 0.5) };
+    for (precision, bits) in [(Precision::F32, 32), (Precision::F64, 64)] {
+        let mut mesh = shapes::cube(1);
+        for tolerance in [Tolerance::Units(1e-300), Tolerance::Voxels(1e-300)] {
+            let error = offset(&mesh, &with(tolerance, precision), &run(1)).unwrap_err();
+            let Error::Settings(SettingsError::FineTolerance { bits: found, smallest, .. }) = error else {
+                panic!("{error}")
+            };
+            assert_eq!(found, bits);
+            // What is taken makes a mesh like any other.
+            let fine = offset(&mesh, &with(Tolerance::Units(smallest), precision), &run(1)).unwrap();
+            assert!(fine.statistics.contour.beyond_tolerance.is_some());
+            // Farther from the origin, it would be larger.
+            mesh.vertices.iter_mut().for_each(|v| v[0] += 8.0);
+            let error = offset(&mesh, &with(Tolerance::Units(smallest), precision), &run(1)).unwrap_err();
+            assert!(matches!(error, Error::Settings(SettingsError::FineTolerance { .. })), "{error}");
+        }
+    }
+}
+
+#[test]
 fn a_voxel_size_beyond_memory_is_refused_with_one_that_fits() {
     let limited = |voxel| OffsetSettings { max_memory: Some(64 << 20), ..settings(0.1, voxel) };
     let error = offset(&shapes::cube(1), &limited(0.001), &run(1)).unwrap_err();
