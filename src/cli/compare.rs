@@ -7,7 +7,7 @@ use super::offset::DEFAULT_RESOLUTION;
 use super::outputs;
 use super::session::{Session, Verbosity, print};
 use exocarp::compare::{
-    CompareSettings, Comparison, Event, Job, Method, Programs, compare, report, text, work,
+    CompareSettings, Comparison, Event, Job, Lost, Method, Programs, compare, report, text, work,
 };
 use exocarp::offset::VoxelSize;
 use std::path::PathBuf;
@@ -90,10 +90,25 @@ fn tell(event: &Event, session: &Session) {
 
 /// Nothing to compare is a failure, one peer less is none.
 fn check(comparison: &Comparison) -> Result<(), Failure> {
-    match comparison.results.iter().any(|r| r.median.is_some()) {
-        true => Ok(()),
-        false => Err(Failure::new(Exit::Internal, "no method finished; the table says why")),
+    if comparison.results.iter().any(|r| r.median.is_some()) {
+        return Ok(());
     }
+    let lost: Vec<(Method, &Lost)> =
+        comparison.results.iter().filter_map(|r| Some((r.method, r.lost.as_ref()?))).collect();
+    let is_broken = |lost: &Lost| match lost {
+        Lost::Crashed(_) => true,
+        Lost::Failed(reason) => reason.starts_with("internal error"),
+        Lost::TimedOut(_) => false,
+    };
+    let exit = if lost.iter().any(|(_, lost)| is_broken(lost)) {
+        Exit::Internal
+    } else if lost.iter().any(|(_, lost)| matches!(lost, Lost::TimedOut(_))) {
+        Exit::Limit
+    } else {
+        Exit::Empty
+    };
+    let first = lost.first().map(|(method, lost)| format!("; {}: {lost}", method.title()));
+    Err(Failure::new(exit, format!("no method finished{}", first.unwrap_or_default())))
 }
 
 /// One run of one method, in this process.
