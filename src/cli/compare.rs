@@ -26,7 +26,8 @@ pub(super) fn run(arguments: &CompareArguments, session: &Session) -> Result<(),
     outputs::check([&page, &arguments.json].into_iter().flatten().map(PathBuf::as_path))?;
 
     let (loaded, _) = load_mesh(&arguments.input, session)?;
-    let mut watch = |event: Event| tell(&event, session);
+    // What is lost of this is in the table, which is not lost unnoticed.
+    let mut watch = |event: Event| drop(tell(&event, session));
     let comparison =
         compare(&loaded.mesh, &settings(arguments), &programs(arguments)?, &session.run, &mut watch)?;
     for note in &comparison.notes {
@@ -37,15 +38,15 @@ pub(super) fn run(arguments: &CompareArguments, session: &Session) -> Result<(),
     }
     if let Some(path) = &page {
         if session.verbosity == Verbosity::Verbose {
-            session.tell("drawing the report");
+            drop(session.tell("drawing the report"));
         }
         let title = arguments.input.file_name().unwrap_or_default().to_string_lossy();
         save_text(path, &report::page(&comparison, &loaded.mesh, &title, &session.run)?, session)?;
     }
     session.staging.commit()?;
-    session.tell(&text(&comparison));
+    session.tell(&text(&comparison))?;
     if let Some(path) = &page {
-        session.tell(&format!("{}: the table, charts and pictures", path.display()));
+        session.tell(&format!("{}: the table, charts and pictures", path.display()))?;
     }
     check(&comparison)
 }
@@ -78,10 +79,13 @@ fn programs(arguments: &CompareArguments) -> Result<Programs, Failure> {
     Ok(Programs { worker, python: arguments.python.clone() })
 }
 
-fn tell(event: &Event, session: &Session) {
+fn tell(event: &Event, session: &Session) -> Result<(), Failure> {
     match event {
-        Event::Lost(method, lost) => session.warn(&format!("{}: {lost}", method.title())),
-        _ if session.verbosity < Verbosity::Verbose => {}
+        Event::Lost(method, lost) => {
+            session.warn(&format!("{}: {lost}", method.title()));
+            Ok(())
+        }
+        _ if session.verbosity < Verbosity::Verbose => Ok(()),
         Event::Begin(run, method) => session.tell(&format!("run {run}: {}", method.title())),
         Event::Measured(m) => session.tell(&format!("  {:.2} s", m.engine)),
         Event::Judging(method) => session.tell(&format!("judging {}", method.title())),
@@ -121,6 +125,5 @@ pub(super) fn run_worker(arguments: &WorkerArguments, session: &Session) -> Resu
         output: arguments.output.clone(),
     };
     let line = work(&job, &session.run)?.to_line();
-    print(&line.map_err(|error| Failure::new(Exit::Internal, error.to_string()))?);
-    Ok(())
+    print(&line.map_err(|error| Failure::new(Exit::Internal, error.to_string()))?)
 }

@@ -84,7 +84,11 @@ pub(super) fn say_interrupted() {
 impl<E: Into<Error>> From<E> for Failure {
     fn from(error: E) -> Self {
         let error = error.into();
-        Failure::new(of(&error), error.to_string())
+        let mut sentence = error.to_string();
+        if matches!(error, Error::Vdb(VdbError::Write { .. })) {
+            sentence += "; check the permissions and the free space";
+        }
+        Failure::new(of(&error), sentence)
     }
 }
 
@@ -122,10 +126,20 @@ fn of(error: &Error) -> Exit {
             | VdbError::MissingGrid { .. }
             | VdbError::Unsuitable { .. } => Exit::Input,
             VdbError::Size { .. } => Exit::Limit,
+            VdbError::Write { reason, .. } if is_full(reason) => Exit::Limit,
             _ => Exit::Internal,
         },
         _ => Exit::Internal,
     }
+}
+
+/// Whether this is what the system says of a full disk. OpenVDB hands on the text alone.
+fn is_full(reason: &str) -> bool {
+    /// Beyond the last number of an error of any system.
+    const NUMBERS: i32 = 256;
+    (1..NUMBERS).map(std::io::Error::from_raw_os_error).any(|error| {
+        of_io(&error) == Exit::Limit && error.to_string().split(" (os error").next() == Some(reason)
+    })
 }
 
 /// A write that failed: a full disk is a limit, anything else is not foreseen.
@@ -133,5 +147,19 @@ pub(super) fn of_io(error: &std::io::Error) -> Exit {
     match error.kind() {
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => Exit::Limit,
         _ => Exit::Internal,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_full_disk_is_known_by_its_name() {
+        assert!(
+            is_full("No space left on device") && is_full("Disk quota exceeded") && is_full("File too large")
+        );
+        assert!(!is_full("Permission denied") && !is_full(""));
     }
 }

@@ -22,12 +22,10 @@ pub(super) fn run(arguments: &InfoArguments, session: &Session) -> Result<(), Fa
         let facts = mesh_facts(arguments, session)?;
         (facts.text(), serde_json::to_value(&facts).unwrap_or(Value::Null))
     };
-    if arguments.json {
-        print(&format!("{json:#}"));
-    } else {
-        print(&format!("{}\n{text}", arguments.file.display()));
+    match arguments.json {
+        true => print(&format!("{json:#}")),
+        false => print(&format!("{}\n{text}", arguments.file.display())),
     }
-    Ok(())
 }
 
 /// A mesh after cleaning, and what cleaning did.

@@ -36,8 +36,7 @@ pub(super) fn run(arguments: &MergeArguments, session: &Session) -> Result<(), F
         output.display(),
         counted(tiles.len(), "tile", "tiles"),
         session.wall(),
-    ));
-    Ok(())
+    ))
 }
 
 /// The user knows nothing of the temporary path.

@@ -35,6 +35,7 @@ use std::time::Instant;
 /// Parses the arguments, runs the command, and turns what comes of it into an exit code.
 pub fn main() -> ExitCode {
     resources::return_large_blocks();
+    resources::let_large_writes_fail();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => return usage(&error),
@@ -63,8 +64,7 @@ fn run(arguments: Arguments, started: Instant) -> Result<(), Failure> {
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Arguments::command(), "exocarp", &mut script);
-            session::print(&String::from_utf8_lossy(&script));
-            Ok(())
+            session::print(&String::from_utf8_lossy(&script))
         }
         Command::Offset(command) => offset::run(&command, &Session::start(&arguments.common, started)?),
         Command::Merge(command) => merge::run(&command, &Session::start(&arguments.common, started)?),
@@ -83,11 +83,10 @@ fn run(arguments: Arguments, started: Instant) -> Result<(), Failure> {
 /// Help and version go to stdout; anything else that clap has to say is wrong use, in one sentence.
 fn usage(error: &clap::Error) -> ExitCode {
     match error.kind() {
-        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
-            // Nobody is left to be told when stdout is closed.
-            let _ = error.print();
-            ExitCode::SUCCESS
-        }
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => match session::printed(error.print()) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(failure) => failure.report(),
+        },
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
             let _ = error.print();
             Exit::Usage.into()

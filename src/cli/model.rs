@@ -11,8 +11,7 @@ use exocarp::run::Phase;
 
 pub(super) fn run(arguments: &ModelArguments, session: &Session) -> Result<(), Failure> {
     let (Some(name), Some(output)) = (&arguments.name, &arguments.output) else {
-        print(&list());
-        return Ok(());
+        return print(&list());
     };
     let Some(shape) = shapes::by_name(name) else {
         return Err(Failure::usage(format!("there is no model {name:?}; exocarp model lists them")));
@@ -27,8 +26,7 @@ pub(super) fn run(arguments: &ModelArguments, session: &Session) -> Result<(), F
         output.display(),
         counted(mesh.triangles.len(), "triangle", "triangles"),
         counted(mesh.vertices.len(), "vertex", "vertices"),
-    ));
-    Ok(())
+    ))
 }
 
 fn list() -> String {

@@ -59,8 +59,7 @@ pub(super) fn run(arguments: &OffsetArguments, session: &Session) -> Result<(), 
         save_json(path, &file, session)?;
     }
     session.staging.commit()?;
-    tell(arguments, &result, &phases, session);
-    Ok(())
+    tell(arguments, &result, &phases, session)
 }
 
 fn settings(arguments: &OffsetArguments, session: &Session) -> Result<OffsetSettings, Failure> {
@@ -171,7 +170,12 @@ impl Settings {
     }
 }
 
-fn tell(arguments: &OffsetArguments, result: &OffsetResult, phases: &Phases<EngineTimes>, session: &Session) {
+fn tell(
+    arguments: &OffsetArguments,
+    result: &OffsetResult,
+    phases: &Phases<EngineTimes>,
+    session: &Session,
+) -> Result<(), Failure> {
     let s = &result.statistics;
     let what = match &arguments.output {
         Some(_) => {
@@ -189,9 +193,10 @@ fn tell(arguments: &OffsetArguments, result: &OffsetResult, phases: &Phases<Engi
     let mut files = arguments.output.iter().chain(arguments.more.files());
     let first = files.next().map(|path| path.display().to_string()).unwrap_or_default();
     let more: String = files.map(|path| format!("; {}", path.display())).collect();
-    session.tell(&format!("{first}: {what}, {:.2} s{more}", session.wall()));
-    if session.verbosity == Verbosity::Verbose {
-        session.tell(&summary(result, phases));
+    session.tell(&format!("{first}: {what}, {:.2} s{more}", session.wall()))?;
+    match session.verbosity {
+        Verbosity::Verbose => session.tell(&summary(result, phases)),
+        _ => Ok(()),
     }
 }
 

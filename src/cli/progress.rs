@@ -50,8 +50,8 @@ impl Bar {
     }
 
     /// Takes the bar away, writes, and puts it back.
-    pub fn suspend(&self, write: impl FnOnce()) {
-        self.bar.suspend(write);
+    pub fn suspend<T>(&self, write: impl FnOnce() -> T) -> T {
+        self.bar.suspend(write)
     }
 }
 

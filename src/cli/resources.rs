@@ -22,6 +22,16 @@ pub(super) fn return_large_blocks() {
     }
 }
 
+/// Has a write beyond the largest size that files may have (`ulimit -f`) fail like one to a full disk, with
+/// exit code 5 and nothing left behind, instead of ending the program on the spot.
+pub(super) fn let_large_writes_fail() {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    {
+        // SAFETY: it takes two numbers, and no handler is installed that could run at a bad time.
+        let _ = unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
+    }
+}
+
 /// The value of a line like `VmHWM:   1234 kB`, in bytes.
 fn kilobytes(text: &str, key: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(key))?;

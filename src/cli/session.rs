@@ -1,7 +1,7 @@
 //! What all commands share: verbosity, threads, the interrupt, the time.
 
 use super::args::Common;
-use super::exit::{Exit, Failure, say, say_interrupted};
+use super::exit::{Exit, Failure, of_io, say, say_interrupted};
 use super::outputs::Staging;
 use super::progress::Bar;
 use exocarp::run::{CancelToken, Phase, RunSettings};
@@ -73,11 +73,12 @@ impl Session {
         }
     }
 
-    /// A result on stdout.
-    pub fn tell(&self, text: &str) {
-        if self.verbosity > Verbosity::Quiet {
-            self.above_bar(|| print(text));
+    /// A result on stdout. Fails when it does not get there, as [`print`] does.
+    pub fn tell(&self, text: &str) -> Result<(), Failure> {
+        if self.verbosity == Verbosity::Quiet {
+            return Ok(());
         }
+        self.above_bar(|| print(text))
     }
 
     /// Seconds since the command line was parsed.
@@ -85,7 +86,7 @@ impl Session {
         self.started.elapsed().as_secs_f64()
     }
 
-    fn above_bar(&self, write: impl FnOnce()) {
+    fn above_bar<T>(&self, write: impl FnOnce() -> T) -> T {
         match &self.bar {
             Some(bar) => bar.suspend(write),
             None => write(),
@@ -100,10 +101,22 @@ impl Drop for Session {
     }
 }
 
-/// Text on stdout, with a line end.
-pub(super) fn print(text: &str) {
-    // A reader that went away (`| head`) is no error of ours.
-    let _ = writeln!(std::io::stdout(), "{}", text.trim_end());
+/// Text on stdout, with a line end. A reader that went away (`| head`) is no error, a text that is lost is
+/// one.
+pub(super) fn print(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout();
+    printed(writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush()))
+}
+
+/// What came of printing.
+pub(super) fn printed(result: std::io::Result<()>) -> Result<(), Failure> {
+    match result {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::new(
+            of_io(&error),
+            format!("the text for standard output is lost ({error}); check the free space where it goes"),
+        )),
+        _ => Ok(()),
+    }
 }
 
 /// On Ctrl-C or the signal to terminate: cancels, gives the command a moment to end by itself, and ends

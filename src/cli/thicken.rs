@@ -60,8 +60,7 @@ pub(super) fn run(arguments: &ThickenArguments, session: &Session) -> Result<(),
         save_json(path, &RunFile::new("thicken", input, stated, &phases, statistics, session), session)?;
     }
     session.staging.commit()?;
-    tell(arguments, &result, &phases, session);
-    Ok(())
+    tell(arguments, &result, &phases, session)
 }
 
 /// Writes the solid as a level set: the signed distance from its boundary.
@@ -135,7 +134,7 @@ fn tell(
     result: &ThickenResult,
     phases: &Phases<ThickenTimes>,
     session: &Session,
-) {
+) -> Result<(), Failure> {
     let more: String = arguments.more.files().map(|path| format!("; {}", path.display())).collect();
     session.tell(&format!(
         "{}: {}, {}, {:.2} s{more}",
@@ -143,7 +142,7 @@ fn tell(
         counted(result.mesh.triangles.len(), "triangle", "triangles"),
         counted(result.mesh.vertices.len(), "vertex", "vertices"),
         session.wall(),
-    ));
+    ))?;
     if session.verbosity == Verbosity::Verbose {
         let s = &result.statistics;
         let seconds = |name: &str, t: f64| format!("  {name:<10} {t:>8.3} s\n");
@@ -164,6 +163,7 @@ fn tell(
         text += &count("triangles kept", s.triangles.kept);
         text += &count("triangles split", s.triangles.split);
         text += &count("triangles new", s.triangles.new);
-        session.tell(&text);
+        session.tell(&text)?;
     }
+    Ok(())
 }
