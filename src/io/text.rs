@@ -3,7 +3,7 @@
 use std::io::{BufRead, ErrorKind, Seek, SeekFrom, Write};
 use std::ops::Range;
 
-use memchr::memchr2;
+use memchr::{memchr_iter, memchr2};
 
 use super::Format;
 use super::error::{Fault, Place, Problem, quote};
@@ -70,7 +70,7 @@ impl<R: BufRead> Text<R> {
             self.line.drain(..BYTE_ORDER_MARK.len());
         }
         if let Some(mark) = self.comment
-            && let Some(at) = (start..self.line.len()).find(|&at| begins_comment(&self.line, at, mark))
+            && let Some(at) = comment(&self.line, start, mark)
         {
             self.line.truncate(at);
         }
@@ -245,11 +245,11 @@ pub(super) fn is_not_finite(word: &[u8]) -> bool {
         || word.strip_prefix(b"1.").is_some_and(|rest| NO_NUMBERS.iter().any(|name| rest.starts_with(name)))
 }
 
-/// Whether a comment begins at a byte of a line: not in the midst of `1.#IND`.
-fn begins_comment(line: &[u8], at: usize, mark: u8) -> bool {
-    let in_number =
-        || line[..at].ends_with(b"1.") && NO_NUMBERS.iter().any(|name| line[at..].starts_with(name));
-    line[at] == mark && !in_number()
+/// Where the comment of a line begins, behind `start`: not in the midst of `1.#IND`.
+fn comment(line: &[u8], start: usize, mark: u8) -> Option<usize> {
+    let is_number =
+        |at: usize| line[..at].ends_with(b"1.") && NO_NUMBERS.iter().any(|name| line[at..].starts_with(name));
+    memchr_iter(mark, &line[start..]).map(|n| start + n).find(|&at| !is_number(at))
 }
 
 fn is_space(byte: u8) -> bool {
