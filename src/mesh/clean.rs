@@ -70,10 +70,11 @@ impl fmt::Display for CleanReport {
 ///    predicates, so a sliver stays however thin it is. Where the corners lie on a line, the triangle across
 ///    the longest edge is split at the corner in the middle (see `degenerate.rs`): so a closed mesh stays
 ///    closed.
-/// 3. Triangles with the corners and the orientation of an earlier one are dropped; where step 2 splits, those
-///    with an area also before it. Two triangles with the same corners and *opposite* orientation both stay: together they are a
-///    fin without thickness, a surface that was drawn from both sides. Dropping one would leave a sheet with a
-///    border where the file has a closed surface, dropping both a hole where the file has something.
+/// 3. Triangles with the corners and the orientation of an earlier one are dropped; where step 2 splits,
+///    those with an area also before it. Two triangles with the same corners and *opposite* orientation both
+///    stay: together they are a fin without thickness, a surface that was drawn from both sides. Dropping one
+///    would leave a sheet with a border where the file has a closed surface, dropping both a hole where the
+///    file has something.
 /// 4. Vertices that no triangle has are dropped.
 ///
 /// What remains keeps its order, so the result depends on nothing but the mesh.
@@ -140,8 +141,8 @@ fn drop_numbered(triangles: &mut Vec<[u32; 3]>, numbers: &[u32]) {
     });
 }
 
-/// Drops triangles that are an earlier one again, whichever corner they begin with, but not those with the numbers
-/// `kept`, which ascend. Returns how many.
+/// Drops triangles that are an earlier one again, whichever corner they begin with, but not those with the
+/// numbers `kept`, which ascend. Returns how many.
 fn drop_duplicates(triangles: &mut Vec<[u32; 3]>, kept: &[u32]) -> usize {
     let key = |t: [u32; 3]| match t {
         [a, b, c] if a < b && a < c => [a, b, c],
