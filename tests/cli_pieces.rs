@@ -9,10 +9,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// So fine that slabs with their halos are less than the whole.
-const RESOLUTION: &str = "256";
+const RESOLUTION: &str = "384";
 
 /// Less than the whole takes.
-const MEMORY: &str = "132M";
+const MEMORY: &str = "180M";
 
 /// A model and a directory for what is made of it.
 struct Bench {

@@ -7,8 +7,8 @@ use glam::DVec3;
 use std::collections::BinaryHeap;
 
 /// Boxes that are looked at, at most. In plates and needles nearly every box could hold the deepest point, and a search to
-/// the last digit does not end. This many take 5 MB, and a tenth of a second to a second.
-const MOST_BOXES: usize = 30_000;
+/// the last digit does not end. This many take 2 MB, and a tenth of a second to a second.
+const MOST_BOXES: usize = 15_000;
 
 /// Boxes between two looks at whether the run is cancelled.
 const BETWEEN_CHECKS: usize = 256;
@@ -40,7 +40,7 @@ pub fn largest_depth(
     let half = 0.5 * bounds.size();
     let mut deepest = 0.0f64;
     let mut open = BinaryHeap::new();
-    open.push(SearchBox::new(distance, bounds.centre(), half, [0; 2], &mut deepest));
+    open.push(SearchBox::new(distance, bounds.centre(), half, 0, &mut deepest));
     let negligible = NEGLIGIBLE * half.max_element();
     let mut looked_at = 1;
     while let Some(widest) = open.pop() {
@@ -66,25 +66,22 @@ struct SearchBox {
     half: DVec3,
     /// No point of the box is deeper than this.
     bound: f64,
-    /// The last two different triangles that were closest to the centres of this box and of those around it.
-    near: [u32; 2],
+    /// The triangle that is closest to the centre.
+    near: u32,
 }
 
 impl SearchBox {
-    fn new(
-        distance: &SignedDistance,
-        centre: DVec3,
-        half: DVec3,
-        [first, second]: [u32; 2],
-        deepest: &mut f64,
-    ) -> Self {
-        let sample = distance.at(centre, first);
+    fn new(distance: &SignedDistance, centre: DVec3, half: DVec3, guess: u32, deepest: &mut f64) -> Self {
+        let sample = distance.at(centre, guess);
         *deepest = deepest.max(-sample.distance);
-        let near = [sample.triangle, if sample.triangle == first { second } else { first }];
+        // Away from the closest side is the opposite one.
+        let opposite = distance.at(centre + 0.5 * (centre - sample.closest), sample.triangle);
+        *deepest = deepest.max(-opposite.distance);
+        let near = [sample.triangle, opposite.triangle];
         // Depths change by no more than the way.
         let lipschitz = half.length() - sample.distance;
         let bound = lipschitz.min(between(distance, centre, half, near));
-        SearchBox { centre, half, bound, near }
+        SearchBox { centre, half, bound, near: sample.triangle }
     }
 
     fn halves(&self, distance: &SignedDistance, deepest: &mut f64) -> [SearchBox; 2] {

@@ -89,8 +89,9 @@ mod tests {
         assert!(matches!(scaled(1e20).check(), Err(MeshError::TooLarge { vertex: 0, .. })));
         assert!(matches!(scaled(1e-20).check(), Err(MeshError::TooSmall { .. })));
         let mut mesh = shapes::cube(1);
-        mesh.triangles[5][1] = 99;
-        assert_eq!(mesh.check(), Err(MeshError::NoVertex { triangle: 5, vertex: 99, vertices: 8 }));
+        let vertices = mesh.vertices.len();
+        mesh.triangles[5][1] = vertices as u32;
+        assert_eq!(mesh.check(), Err(MeshError::NoVertex { triangle: 5, vertex: vertices as u32, vertices }));
         for wrong in [f64::NAN, f64::INFINITY] {
             let mut mesh = shapes::cube(1);
             mesh.vertices[3][2] = wrong;

@@ -38,7 +38,7 @@ impl MemoryError {
         allowed: u64,
     ) -> MemoryError {
         let voxel = settings.lattice.voxel;
-        let fixed = fixed_bytes(mesh);
+        let fixed = slab_bytes(mesh);
         let needed = fixed + leaves * BYTES_PER_LEAF;
         // The leaves of a layer and its halo lie along curves: they double when the voxel size is halved.
         let room = allowed.saturating_sub(fixed).max(allowed / 10).max(1);
@@ -71,13 +71,18 @@ const BYTES_PER_STORED_CELL: [f64; 2] = [30.0, 25.0];
 /// Bytes per cell of the closest triangles in OpenVDB.
 const BYTES_PER_CLOSEST_CELL: f64 = 60.0;
 
-/// Peak memory per leaf of a slab's band, in bytes. Measured on the nine models at 512 voxels, and rounded up: at most 11,700
-/// for meshes alone, 14,300 with the band in OpenVDB, too.
-const BYTES_PER_LEAF: u64 = 16_000;
+/// Peak memory per leaf of a slab's band, in bytes: of its cells, with the level set in OpenVDB, and a little more, since what a
+/// slab leaves to the next one is not counted.
+const BYTES_PER_LEAF: u64 = 11_500;
 
 /// The leaves whose work fits into this many bytes beside program and input.
 pub(super) fn leaves_within(mesh: &TriMesh, bytes: u64) -> u64 {
-    bytes.saturating_sub(fixed_bytes(mesh)) / BYTES_PER_LEAF
+    bytes.saturating_sub(slab_bytes(mesh)) / BYTES_PER_LEAF
+}
+
+/// What program, input and the lists of its triangles take, in bytes: with slabs, and however small they are.
+fn slab_bytes(mesh: &TriMesh) -> u64 {
+    fixed_bytes(mesh) + (mesh.triangles.len() as f64 * BYTES_PER_FEATURE) as u64
 }
 
 /// What program and input take, in bytes.
