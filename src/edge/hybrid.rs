@@ -167,6 +167,9 @@ impl Solver<'_> {
                 // Not a root of the whole mesh, but on a known side: as good as a subdivision, and already paid.
                 self.replace(&mut low, &mut high, root);
             }
+            if self.is_out_of_reach(edge, &low, &high) {
+                return self.jump(edge, 0.5 * (low.t + high.t), statistics);
+            }
             let middle = self.end(edge, 0.5 * (low.t + high.t), low.sample.triangle, statistics);
             subdivisions += 1;
             if self.is_root(&middle) {
@@ -180,6 +183,13 @@ impl Solver<'_> {
             let proposal = self.propose(edge, &Bracket { low, high });
             tried = proposal.map(|p| self.end(edge, p.t, p.triangle, statistics));
         }
+    }
+
+    /// Whether neither end can come to zero within the interval: the distance changes by no more than the way, so the sign jumps.
+    fn is_out_of_reach(&self, edge: &GridEdge, low: &End, high: &End) -> bool {
+        let rounding = 1e-12 * (edge.inside.abs().max_element() + self.r.abs());
+        let way = (high.t - low.t) * self.voxel + rounding;
+        self.phi(low) < -way && self.phi(high) > way
     }
 
     /// The interval shrank to nothing: a root that rounding keeps from being recognised, or a jump.
