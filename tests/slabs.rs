@@ -71,10 +71,10 @@ fn content(band: &Band) -> (Vec<exocarp::lattice::Ijk>, Vec<u32>, Vec<[u64; 8]>,
     (origins, values.into_iter().map(f32::to_bits).collect(), active, band.surface.inside_at(&grid))
 }
 
-/// What the thinnest slabs take.
-fn least_memory(mesh: &TriMesh, settings: &OffsetSettings) -> u64 {
+/// A little more than the thinnest slabs take: those of one layer would be many.
+fn little_memory(mesh: &TriMesh, settings: &OffsetSettings) -> u64 {
     match offset_in_slabs(mesh, settings, Cut::Memory(1), &mut Gathered::default(), &run()) {
-        Err(Error::Memory(error)) => error.needed,
+        Err(Error::Memory(error)) => error.needed + error.needed / 20,
         // Nothing is cut where no surface is.
         _ => 1,
     }
@@ -108,7 +108,7 @@ fn slabs_one_after_the_other_give_the_whole() {
                 let what = format!("{name} {distance} {tolerance:?}");
                 let whole = offset(&mesh, &settings, &run()).unwrap();
                 let mut pieces = Gathered::default();
-                let cut = Cut::Memory(least_memory(&mesh, &settings));
+                let cut = Cut::Memory(little_memory(&mesh, &settings));
                 let slabs = offset_in_slabs(&mesh, &settings, cut, &mut pieces, &run()).unwrap();
                 assert!(slabs.statistics.slabs > 1, "{what}: {}", slabs.statistics.slabs);
                 assert!(pieces.0 == whole.mesh, "{what}: the meshes differ");
@@ -184,7 +184,7 @@ fn inside_out_models_in_slabs_and_tiles_give_the_whole() {
                 assert!(tiles == whole.mesh, "{what}: the meshes of {of} tiles differ");
             }
             let mut pieces = Gathered::default();
-            let memory = Cut::Memory(least_memory(&mesh, &settings));
+            let memory = Cut::Memory(little_memory(&mesh, &settings));
             let slabs = offset_in_slabs(&mesh, &settings, memory, &mut pieces, &run()).unwrap();
             assert!(pieces.0 == whole.mesh, "{what}: the mesh in slabs differs");
             assert_same(&slabs, &whole, &what);
