@@ -23,9 +23,30 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::ops::AddAssign;
 
-/// How far from a lone node others are looked for, along each axis. Corners as sharp as those of a box have one next to it,
-/// across a diagonal; those of needles farther away.
-const REACH: i32 = 2;
+/// How far from a lone node others are looked for, along each axis. Corners as sharp as those of a box, at any rotation, have one
+/// across a diagonal of a cell: the cone in one is 35 degrees wide to each side, and no direction is farther than 28 from all
+/// 26 neighbours.
+const REACH: i32 = 1;
+
+/// How far beyond its node a tip may reach, in voxels, away from the other node and to the sides. Those of boxes end within 0.3,
+/// and are found again from the cells beside them; claws and the borders of sheets reach farther, and would be lost.
+const LONGEST_TIP: f64 = 0.5;
+
+/// Directions are away from the other node where their cosine with the way to it is below this.
+const AWAY: f64 = -0.2;
+
+/// The 26 directions to the neighbours of a node.
+const AROUND: [[f64; 3]; 26] = {
+    let mut around = [[0.0; 3]; 26];
+    let mut n = 0;
+    while n < 26 {
+        // Number 13 of 27 is the node itself.
+        let m = if n < 13 { n } else { n + 1 };
+        around[n] = [(m / 9) as f64 - 1.0, (m / 3 % 3) as f64 - 1.0, (m % 3) as f64 - 1.0];
+        n += 1;
+    }
+    around
+};
 
 /// Nodes that the way is tried to, at most, the nearest first.
 const MOST_TRIED: usize = 8;
@@ -78,13 +99,14 @@ pub fn join_lone_nodes(
         }
         // The nearest first; those of equal length in their order.
         near.sort_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
+        let is_on_side = |p: DVec3| (distance.at(p, 0).distance - r < 0.0) == side;
         let is_free = |way: &DVec3| {
-            let mut guess = 0;
-            (1..STEPS).all(|n| {
-                let sample = distance.at(from + *way * (f64::from(n) / f64::from(STEPS)), guess);
-                guess = sample.triangle;
-                (sample.distance - r < 0.0) == side
-            })
+            let beyond = AROUND.map(|d| DVec3::from(d).normalize());
+            let ends = |d: &DVec3| {
+                d.dot(way.normalize()) > AWAY || !is_on_side(from + LONGEST_TIP * lattice.voxel * *d)
+            };
+            let between = |n: i32| from + *way * (f64::from(n) / f64::from(STEPS));
+            beyond.iter().all(ends) && (1..STEPS).all(|n| is_on_side(between(n)))
         };
         near.iter().take(MOST_TRIED).any(is_free)
     };
