@@ -211,14 +211,14 @@ mod tests {
 
     #[test]
     fn a_tip_changes_sides_and_a_small_part_does_not() {
-        // The signs of a cube's nodes, with one more node inside of it and one far away from it taken for lone ones.
+        // A cube of half-side 0.8 whose last layer of nodes is taken for outside but for a corner, and a node far away.
         let mesh = shapes::cube(1);
         let topology = Topology::new(&mesh);
         let distance = SignedDistance::new(&mesh, &topology);
         let lattice = Lattice { voxel: 0.25 };
         let (tip, part) = (Ijk::new(3, 3, 3), Ijk::new(9, 9, 9));
         let mut signs = field(|n| n.0.iter().all(|x| x.abs() <= 2) || n == tip || n == part);
-        let counts = join_lone_nodes(&mut signs, &distance, 0.0, lattice, Slab::WHOLE);
+        let counts = join_lone_nodes(&mut signs, &distance, -0.2, lattice, Slab::WHOLE);
         assert_eq!(counts, LoneNodes { joined: 1, alone: 1 });
         let is_inside = |node: Ijk| {
             let leaf = signs.leaves().find(|&l| signs.origin(l) == node.leaf_origin()).unwrap();
