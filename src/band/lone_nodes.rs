@@ -22,11 +22,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::ops::AddAssign;
-
-/// How far from a lone node others are looked for, along each axis. Corners as sharp as those of a box, at any rotation, have one
-/// across a diagonal of a cell: the cone in one is 35 degrees wide to each side, and no direction is farther than 28 from all
-/// 26 neighbours.
-const REACH: i32 = 1;
+use std::sync::LazyLock;
 
 /// How far beyond its node a tip may reach, in voxels, away from the other node and to the sides. Those of boxes end within 0.3,
 /// and are found again from the cells beside them; claws and the borders of sheets reach farther, and would be lost.
@@ -35,20 +31,17 @@ const LONGEST_TIP: f64 = 0.5;
 /// Directions are away from the other node where their cosine with the way to it is below this.
 const AWAY: f64 = -0.2;
 
-/// The 26 directions to the neighbours of a node.
-const AROUND: [[f64; 3]; 26] = {
-    let mut around = [[0.0; 3]; 26];
-    let mut n = 0;
-    while n < 26 {
-        // Number 13 of 27 is the node itself.
-        let m = if n < 13 { n } else { n + 1 };
-        around[n] = [(m / 9) as f64 - 1.0, (m / 3 % 3) as f64 - 1.0, (m % 3) as f64 - 1.0];
-        n += 1;
-    }
-    around
-};
+/// The 26 neighbours of a node, those across a face of its cells first, then those across an edge, then across a corner. Among them
+/// are the others of its body, if that has a corner as sharp as those of a box, at any rotation: the cone in one is 35 degrees wide
+/// to each side, and no direction is farther than 28 from all neighbours.
+static AROUND: LazyLock<[[i32; 3]; 26]> = LazyLock::new(|| {
+    let mut around: Vec<[i32; 3]> =
+        (0..27).map(|n| [n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1]).filter(|d| *d != [0; 3]).collect();
+    around.sort_by_key(|d| d.iter().map(|x| x.abs()).sum::<i32>());
+    around.try_into().expect("27 less the middle")
+});
 
-/// Nodes that the way is tried to, at most, the nearest first.
+/// Others that the way is tried to, at most, the nearest first.
 const MOST_TRIED: usize = 8;
 
 /// Parts of the way to another node at whose ends the surface must not have been crossed.
@@ -80,52 +73,16 @@ pub fn join_lone_nodes(
 ) -> LoneNodes {
     let field = &*signs;
     let leaves: Vec<LeafId> = field.leaves().collect();
-    let lone: Vec<LeafMask> =
-        leaves.par_iter().with_min_len(16).with_max_len(SHARE).map(|&leaf| lone_in(field, leaf)).collect();
-    let is_lone = |leaf: LeafId, number: usize| lone[leaf.0 as usize][number >> 6] >> (number & 63) & 1 == 1;
-    let is_inside = |leaf, number: usize| field.inside(leaf)[number >> 6] >> (number & 63) & 1 == 1;
-    let joins = |leaf: LeafId, number: usize| {
-        let local = Ijk::in_leaf(Ijk::default(), number);
-        let side = is_inside(leaf, number);
-        let from = DVec3::from(lattice.world_from_index(field.origin(leaf) + local));
-        let mut near: Vec<DVec3> = Vec::new();
-        for n in 0..(2 * REACH + 1).pow(3) {
-            let width = 2 * REACH + 1;
-            let delta = Ijk([n / width / width, n / width % width, n % width].map(|d| d - REACH));
-            let other = field.locate(leaf, (local + delta).0);
-            if other.is_some_and(|(leaf, n)| is_inside(leaf, n) == side && !is_lone(leaf, n)) {
-                near.push(lattice.voxel * DVec3::from(delta.0.map(f64::from)));
-            }
-        }
-        // The nearest first; those of equal length in their order.
-        near.sort_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
-        let is_on_side = |p: DVec3| (distance.at(p, 0).distance - r < 0.0) == side;
-        let is_free = |way: &DVec3| {
-            let beyond = AROUND.map(|d| DVec3::from(d).normalize());
-            let ends = |d: &DVec3| {
-                d.dot(way.normalize()) > AWAY || !is_on_side(from + LONGEST_TIP * lattice.voxel * *d)
-            };
-            let between = |n: i32| from + *way * (f64::from(n) / f64::from(STEPS));
-            beyond.iter().all(ends) && (1..STEPS).all(|n| is_on_side(between(n)))
-        };
-        near.iter().take(MOST_TRIED).any(is_free)
-    };
-    let found: Vec<(LeafId, LeafMask)> = leaves
-        .par_iter()
-        .with_min_len(16)
-        .with_max_len(SHARE)
+    let all = || leaves.par_iter().with_min_len(16).with_max_len(SHARE);
+    let lone: Vec<LeafMask> = all().map(|&leaf| lone_in(field, leaf)).collect();
+    let search = Search { signs: field, lone: &lone, distance, r, lattice };
+    let joined: Vec<(LeafId, LeafMask)> = all()
         .filter(|leaf| lone[leaf.0 as usize] != [0; 8])
-        .map(|&leaf| {
-            let mut joined = [0; 8];
-            for number in bits(&lone[leaf.0 as usize]).filter(|&number| joins(leaf, number)) {
-                joined[number >> 6] |= 1 << (number & 63);
-            }
-            (leaf, joined)
-        })
+        .map(|&leaf| (leaf, search.joining(leaf)))
         .collect();
     let count = |mask: &LeafMask| mask.iter().map(|word| u64::from(word.count_ones())).sum::<u64>();
     let mut counts = LoneNodes::default();
-    for (leaf, joined) in found {
+    for (leaf, joined) in joined {
         if slab.owns(signs.origin(leaf)) {
             counts.joined += count(&joined);
             counts.alone += count(&lone[leaf.0 as usize]) - count(&joined);
@@ -133,6 +90,58 @@ pub fn join_lone_nodes(
         signs.change_sides(leaf, &joined);
     }
     counts
+}
+
+/// Whether a node is in a mask.
+fn is_in(mask: &LeafMask, number: usize) -> bool {
+    mask[number >> 6] >> (number & 63) & 1 == 1
+}
+
+/// Looks for what lone nodes belong to.
+struct Search<'a> {
+    signs: &'a SignField,
+    /// By leaf its lone nodes.
+    lone: &'a [LeafMask],
+    distance: &'a SignedDistance<'a>,
+    r: f64,
+    lattice: Lattice,
+}
+
+impl Search<'_> {
+    /// The lone nodes of a leaf that are the tip of something.
+    fn joining(&self, leaf: LeafId) -> LeafMask {
+        let mut joining = [0; 8];
+        for number in bits(&self.lone[leaf.0 as usize]).filter(|&number| self.is_tip(leaf, number)) {
+            joining[number >> 6] |= 1 << (number & 63);
+        }
+        joining
+    }
+
+    /// Whether the solid reaches from a node to another one of its side that is not alone, and hardly farther than the node
+    /// elsewhere.
+    fn is_tip(&self, leaf: LeafId, number: usize) -> bool {
+        let local = Ijk::in_leaf(Ijk::default(), number);
+        let side = is_in(self.signs.inside(leaf), number);
+        let is_other = |delta: &&[i32; 3]| {
+            self.signs.locate(leaf, (local + Ijk(**delta)).0).is_some_and(|(leaf, number)| {
+                is_in(self.signs.inside(leaf), number) == side && !is_in(&self.lone[leaf.0 as usize], number)
+            })
+        };
+        let voxel = self.lattice.voxel;
+        let node = DVec3::from(self.lattice.world_from_index(self.signs.origin(leaf) + local));
+        let is_on_side = |p: DVec3| (self.distance.at(p, 0).distance - self.r < 0.0) == side;
+        let towards = |delta: &[i32; 3]| DVec3::from(delta.map(f64::from));
+        let reaches = |delta: &[i32; 3]| {
+            let way = towards(delta);
+            let goes_on = |other: &[i32; 3]| {
+                let direction = towards(other).normalize();
+                direction.dot(way.normalize()) <= AWAY && is_on_side(node + LONGEST_TIP * voxel * direction)
+            };
+            let is_between = |n: i32| is_on_side(node + f64::from(n) / f64::from(STEPS) * voxel * way);
+            !AROUND.iter().any(goes_on) && (1..STEPS).all(is_between)
+        };
+        AROUND.iter().filter(is_other).take(MOST_TRIED).any(reaches)
+    }
 }
 
 /// The nodes of a leaf whose six neighbours are all on the other side. Where the field ends, neighbours count as being on
