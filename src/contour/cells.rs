@@ -127,7 +127,7 @@ impl<'a> Cells<'a> {
                 statistics.clamped += u64::from(own.clamped);
             }
         }
-        cells.jumps = VertexSet::new(&jumps, vertices.len());
+        cells.jumps = VertexSet::new(jumps.into_iter(), vertices.len());
         cells.features = Features::new(features, vertices.len(), bend);
         Ok((cells, Placements { vertices, wishes, statistics }))
     }

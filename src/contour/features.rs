@@ -4,6 +4,7 @@ use super::feature::Feature;
 use super::planes::MAX_PLANES;
 use super::qef::dot;
 use super::surface::{Creases, Surface};
+use super::vertex_set::VertexSet;
 
 type Point = [f64; 3];
 
@@ -21,9 +22,9 @@ pub struct FeatureVertex {
 pub struct Features {
     /// By ascending number.
     all: Vec<FeatureVertex>,
-    /// A bit for each vertex.
-    bits: Vec<u64>,
-    /// The features before each word of `bits`.
+    /// Their numbers.
+    vertices: VertexSet,
+    /// The features before each word of the set.
     before: Vec<u32>,
     bend: Bend,
 }
@@ -31,27 +32,21 @@ pub struct Features {
 impl Features {
     /// From a list by ascending number, of a mesh with `vertices` vertices.
     pub fn new(all: Vec<FeatureVertex>, vertices: usize, bend: Bend) -> Features {
-        if all.is_empty() {
-            return Features { all, bits: Vec::new(), before: Vec::new(), bend };
-        }
-        let mut bits = vec![0u64; vertices.div_ceil(64)];
-        for feature in &all {
-            bits[feature.vertex as usize >> 6] |= 1 << (feature.vertex & 63);
-        }
+        let vertices = VertexSet::new(all.iter().map(|feature| feature.vertex), vertices);
         let mut next = 0;
-        let mut before = Vec::with_capacity(bits.len());
-        for word in &bits {
+        let mut before = Vec::with_capacity(vertices.words().len());
+        for word in vertices.words() {
             before.push(next);
             next += word.count_ones();
         }
-        Features { all, bits, before, bend }
+        Features { all, vertices, before, bend }
     }
 
     /// The feature that a vertex stands for.
     #[inline]
     pub fn get(&self, vertex: u32) -> Option<&FeatureVertex> {
         let word = vertex as usize >> 6;
-        let bits = *self.bits.get(word)?;
+        let bits = *self.vertices.words().get(word)?;
         let bit = 1u64 << (vertex & 63);
         if bits & bit == 0 {
             return None;
@@ -63,8 +58,7 @@ impl Features {
     /// Whether any of some vertices stands for a feature.
     #[inline]
     pub fn has_any(&self, vertices: impl IntoIterator<Item = u32>) -> bool {
-        let is_one = |v: u32| self.bits.get(v as usize >> 6).is_some_and(|word| word >> (v & 63) & 1 == 1);
-        vertices.into_iter().any(is_one)
+        self.vertices.contains_any(vertices)
     }
 
     /// The sides of the features among the vertices of a polygon.

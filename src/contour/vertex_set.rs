@@ -8,15 +8,21 @@ pub struct VertexSet {
 
 impl VertexSet {
     /// The set of some of `vertices` vertices.
-    pub fn new(numbers: &[u32], vertices: usize) -> VertexSet {
-        if numbers.is_empty() {
+    pub fn new(numbers: impl ExactSizeIterator<Item = u32>, vertices: usize) -> VertexSet {
+        if numbers.len() == 0 {
             return VertexSet::default();
         }
         let mut words = vec![0u64; vertices.div_ceil(64)];
-        for &number in numbers {
+        for number in numbers {
             words[number as usize >> 6] |= 1 << (number & 63);
         }
         VertexSet { words }
+    }
+
+    /// The bits, 64 vertices to a word.
+    #[inline]
+    pub fn words(&self) -> &[u64] {
+        &self.words
     }
 
     /// Whether a vertex is in the set; vertices that were added to the mesh later are not.
