@@ -7,6 +7,7 @@
 //! counts.
 
 use super::exit::{Exit, Failure, of_io};
+use exocarp::io::keep_permissions;
 use exocarp::run::CancelToken;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -143,21 +144,6 @@ fn names_a_directory(path: &Path) -> bool {
     let bytes = path.as_os_str().as_encoded_bytes();
     let is_separator = |byte: Option<&u8>| byte.is_some_and(|b| std::path::is_separator(char::from(*b)));
     is_separator(bytes.last()) || bytes.strip_suffix(b".").is_some_and(|rest| is_separator(rest.last()))
-}
-
-/// Gives `new` the permissions of `old`, the file that it is to replace, if there is one: who may read and
-/// write it, not as whom it would run.
-fn keep_permissions(new: &Path, old: &Path) -> std::io::Result<()> {
-    #[cfg(unix)]
-    if let Ok(old) = std::fs::metadata(old) {
-        use std::os::unix::fs::PermissionsExt;
-        let mode = old.permissions().mode() & 0o777;
-        // Some file systems know no permissions, and refuse to set them.
-        if std::fs::metadata(new)?.permissions().mode() & 0o777 != mode {
-            std::fs::set_permissions(new, std::fs::Permissions::from_mode(mode))?;
-        }
-    }
-    Ok(())
 }
 
 fn cannot_write(path: &Path, error: &std::io::Error, exit: Exit) -> Failure {

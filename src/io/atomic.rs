@@ -47,8 +47,8 @@ pub(crate) fn write_path_atomically<E: From<SaveError>>(
 }
 
 /// Gives `new` the permissions of `old`, the file that it is to replace, if there is one: who may read and
-/// write it, not as whom it would run.
-fn keep_permissions(new: &Path, old: &Path) -> std::io::Result<()> {
+/// write it, not as whom it would run. For the program, too, which replaces several files together.
+pub fn keep_permissions(new: &Path, old: &Path) -> std::io::Result<()> {
     #[cfg(unix)]
     if let Ok(old) = std::fs::metadata(old) {
         use std::os::unix::fs::PermissionsExt;

@@ -48,6 +48,8 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
+#[doc(hidden)]
+pub use atomic::keep_permissions;
 pub use error::{LoadError, Place, Problem, SaveError, SaveProblem, UnknownFormat};
 pub use loaded::{Loaded, Note, Passed};
 pub use mesh_tiles::{merge_tiles, save_tile};
