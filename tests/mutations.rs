@@ -8,6 +8,7 @@
 mod common;
 
 use common::exocarp;
+use common::random::Random;
 use exocarp::io::{self, Coordinates, SaveOptions};
 use exocarp::mesh::{Topology, TriMesh, clean, shapes};
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -49,23 +50,6 @@ const PER_BYTE: usize = 64;
 /// Changes for each kind of file.
 fn rounds() -> u64 {
     if std::env::var_os("EXOCARP_HEAVY").is_some_and(|v| v == "1") { 3000 } else { 300 }
-}
-
-/// Random numbers (splitmix64).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let x = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        x ^ x >> 31
-    }
-
-    /// A number below `end`, which is not 0.
-    fn below(&mut self, end: usize) -> usize {
-        (self.next() % end as u64) as usize
-    }
 }
 
 /// Numbers that no program expects, as text.

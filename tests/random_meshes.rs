@@ -3,7 +3,8 @@
 
 mod common;
 
-use common::small_meshes::{KINDS, Random, small_mesh};
+use common::random::Random;
+use common::small_meshes::{KINDS, small_mesh};
 use exocarp::io::{Coordinates, SaveOptions, load, save};
 use exocarp::run::RunSettings;
 use exocarp::verify::soundness;
@@ -21,7 +22,7 @@ const MOST_BYTES: u64 = 500_000_000;
 fn options(random: &mut Random) -> Vec<String> {
     let mut options = Vec::new();
     let mut add = |words: &[&str]| options.extend(words.iter().map(|w| (*w).to_owned()));
-    let size = random.power(-9.0, 3.0);
+    let size = random.log_within(-9.0..3.0);
     let distance = match random.below(5) {
         0 => "0".to_owned(),
         1 | 2 => format!("{size:e}%"),
@@ -33,7 +34,7 @@ fn options(random: &mut Random) -> Vec<String> {
         add(&["--sign", "pseudonormal"]);
     }
     if random.one_in(4) {
-        add(&["--tolerance", &format!("{:e}h", random.power(-2.0, 0.0))]);
+        add(&["--tolerance", &format!("{:e}h", random.log_within(-2.0..0.0))]);
     }
     match random.below(6) {
         0 => add(&["--resolve=2"]),
@@ -49,7 +50,7 @@ fn options(random: &mut Random) -> Vec<String> {
 
 /// Offsets mesh number `n` in a process with limits. Returns what was wrong.
 fn offset(n: u64, directory: &Path) -> Result<&'static str, String> {
-    let mut random = Random::new(n);
+    let mut random = Random(n);
     let kind = (n % KINDS.len() as u64) as usize;
     let mesh = small_mesh(kind, &mut random);
     let [input, output, stats] =

@@ -5,41 +5,16 @@
 
 mod common;
 
+use common::random::Random;
 use common::thickened::{audit, check};
 use exocarp::error::Error;
 use exocarp::mesh::TriMesh;
 use exocarp::offset::{Length, Precision, VoxelSize};
 use exocarp::run::RunSettings;
 use exocarp::thicken::{Side, ThickenSettings, thicken};
-use std::ops::Range;
 
 /// A case takes at most about this much: a second of work.
 const MEMORY: u64 = 100 << 20;
-
-/// Random numbers by splitmix64.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let x = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        x ^ x >> 31
-    }
-
-    fn within(&mut self, range: Range<f64>) -> f64 {
-        range.start + (range.end - range.start) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// One of `choices`.
-    fn of<T: Copy>(&mut self, choices: &[T]) -> T {
-        choices[self.next() as usize % choices.len()]
-    }
-
-    fn log_within(&mut self, exponents: Range<f64>) -> f64 {
-        10f64.powf(self.within(exponents))
-    }
-}
 
 /// A height field over up to 8 x 8 squares, flat to rugged, of any size and anywhere; some with holes and
 /// touching corners, some of two sheets.

@@ -1,52 +1,18 @@
 //! Random small meshes of the kinds that people send: needles, sheets, soups, doubled, nested, far away.
 
+use super::random::Random;
 use exocarp::mesh::{TriMesh, shapes};
 use glam::{DQuat, DVec3};
 
-/// Random numbers from a seed (splitmix64).
-pub struct Random(u64);
+/// A point in the cube of half-side 1.
+fn point(r: &mut Random) -> DVec3 {
+    DVec3::new(r.within(-1.0..1.0), r.within(-1.0..1.0), r.within(-1.0..1.0))
+}
 
-impl Random {
-    pub fn new(seed: u64) -> Random {
-        Random(seed)
-    }
-
-    pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// Below `end`.
-    pub fn below(&mut self, end: u64) -> u64 {
-        self.next() % end
-    }
-
-    /// From `low` to `high`.
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// A power of ten with an exponent from `low` to `high`.
-    pub fn power(&mut self, low: f64, high: f64) -> f64 {
-        10f64.powf(self.between(low, high))
-    }
-
-    /// One time in `n`.
-    pub fn one_in(&mut self, n: u64) -> bool {
-        self.below(n) == 0
-    }
-
-    fn point(&mut self) -> DVec3 {
-        DVec3::new(self.between(-1.0, 1.0), self.between(-1.0, 1.0), self.between(-1.0, 1.0))
-    }
-
-    fn rotation(&mut self) -> DQuat {
-        match self.below(3) {
-            0 => DQuat::IDENTITY,
-            _ => DQuat::from_scaled_axis(3.0 * self.point()),
-        }
+fn rotation(r: &mut Random) -> DQuat {
+    match r.below(3) {
+        0 => DQuat::IDENTITY,
+        _ => DQuat::from_scaled_axis(3.0 * point(r)),
     }
 }
 
@@ -58,7 +24,7 @@ fn moved(mut mesh: TriMesh, by: impl Fn(DVec3) -> DVec3) -> TriMesh {
 
 /// A box of the given half-sides, turned and moved.
 fn cuboid(random: &mut Random, half: DVec3, at: DVec3) -> TriMesh {
-    let rotation = random.rotation();
+    let rotation = rotation(random);
     moved(shapes::cube(1), |v| rotation * (v * half) + at)
 }
 
@@ -123,23 +89,23 @@ pub fn small_mesh(kind: usize, random: &mut Random) -> TriMesh {
     let r = random;
     match KINDS[kind] {
         "box" => {
-            let half = DVec3::new(r.power(-2.0, 0.0), r.power(-2.0, 0.0), r.power(-2.0, 0.0));
-            let at = r.point();
+            let half = DVec3::new(r.log_within(-2.0..0.0), r.log_within(-2.0..0.0), r.log_within(-2.0..0.0));
+            let at = point(r);
             cuboid(r, half, at)
         }
         "needle" => {
-            let thin = r.power(-9.0, -1.0);
+            let thin = r.log_within(-9.0..-1.0);
             cuboid(r, DVec3::new(1.0, thin, thin), DVec3::ZERO)
         }
         "sheet" => {
-            let thin = r.power(-12.0, -1.0);
+            let thin = r.log_within(-12.0..-1.0);
             cuboid(r, DVec3::new(1.0, 0.7, thin), DVec3::ZERO)
         }
         "soup" => {
             let mut mesh = TriMesh::default();
             for _ in 0..1 + r.below(100) {
-                let (at, size) = (r.point(), r.power(-3.0, 0.0));
-                let corners = [at, at + size * r.point(), at + size * r.point()];
+                let (at, size) = (point(r), r.log_within(-3.0..0.0));
+                let corners = [at, at + size * point(r), at + size * point(r)];
                 add(
                     &mut mesh,
                     TriMesh { vertices: corners.map(|p| p.to_array()).to_vec(), triangles: vec![[0, 1, 2]] },
@@ -150,7 +116,7 @@ pub fn small_mesh(kind: usize, random: &mut Random) -> TriMesh {
         "pillow" => {
             // Two crumpled squares, joined along their borders only.
             let n = 1 + r.below(4) as u32;
-            let crumple = r.power(-6.0, -0.5);
+            let crumple = r.log_within(-6.0..-0.5);
             let mut mesh = TriMesh::default();
             let mut border = Vec::new();
             for side in 0..2 {
@@ -159,11 +125,11 @@ pub fn small_mesh(kind: usize, random: &mut Random) -> TriMesh {
                         let at = DVec3::new(f64::from(i), f64::from(j), 0.0) / f64::from(n);
                         let on_border = i == 0 || j == 0 || i == n || j == n;
                         if side == 0 {
-                            border.push(at + crumple * r.point());
+                            border.push(at + crumple * point(r));
                         }
                         let known = border[(i * (n + 1) + j) as usize];
                         mesh.vertices
-                            .push(if on_border { known } else { at + crumple * r.point() }.to_array());
+                            .push(if on_border { known } else { at + crumple * point(r) }.to_array());
                     }
                 }
                 let first = side * (n + 1) * (n + 1);
@@ -179,8 +145,8 @@ pub fn small_mesh(kind: usize, random: &mut Random) -> TriMesh {
         "nested" => {
             let mut mesh = cuboid(r, DVec3::ONE, DVec3::ZERO);
             for _ in 0..1 + r.below(3) {
-                let half = DVec3::splat(r.between(0.05, 0.6));
-                let at = 0.1 * r.point();
+                let half = DVec3::splat(r.within(0.05..0.6));
+                let at = 0.1 * point(r);
                 let inner = cuboid(r, half, at);
                 add(&mut mesh, if r.one_in(2) { inner } else { inside_out(inner) });
             }
@@ -195,42 +161,43 @@ pub fn small_mesh(kind: usize, random: &mut Random) -> TriMesh {
         "crossing" => {
             let mut mesh = cuboid(r, DVec3::ONE, DVec3::ZERO);
             for _ in 0..1 + r.below(3) {
-                let half = DVec3::new(r.power(-1.5, 0.3), r.power(-1.5, 0.3), r.power(-1.5, 0.3));
-                let at = r.point();
+                let half =
+                    DVec3::new(r.log_within(-1.5..0.3), r.log_within(-1.5..0.3), r.log_within(-1.5..0.3));
+                let at = point(r);
                 add(&mut mesh, cuboid(r, half, at));
             }
             mesh
         }
         "far" => {
-            let at = r.power(0.0, 7.0) * r.point();
+            let at = r.log_within(0.0..7.0) * point(r);
             cuboid(r, DVec3::ONE, at)
         }
         "tiny" => {
-            let scale = r.power(-30.0, -3.0);
+            let scale = r.log_within(-30.0..-3.0);
             moved(cuboid(r, DVec3::ONE, DVec3::ONE), |v| scale * v)
         }
         "huge" => {
-            let scale = r.power(3.0, 30.0);
+            let scale = r.log_within(3.0..30.0);
             moved(cuboid(r, DVec3::ONE, DVec3::ONE), |v| scale * v)
         }
         "inside_out" => inside_out(cuboid(r, DVec3::new(1.0, 0.5, 0.3), DVec3::ZERO)),
         "noisy" => {
             // Noise as large as the triangles folds them over one another.
-            let noise = r.power(-3.0, -0.5);
+            let noise = r.log_within(-3.0..-0.5);
             let mut mesh = sphere(5 + r.below(10) as u32);
-            mesh.vertices.iter_mut().for_each(|v| *v = (DVec3::from(*v) + noise * r.point()).to_array());
+            mesh.vertices.iter_mut().for_each(|v| *v = (DVec3::from(*v) + noise * point(r)).to_array());
             mesh
         }
         "cut" => {
             let mut mesh = sphere(4 + r.below(8) as u32);
-            let keep = r.between(0.3, 0.99);
-            mesh.triangles.retain(|_| r.between(0.0, 1.0) < keep);
+            let keep = r.within(0.3..0.99);
+            mesh.triangles.retain(|_| r.within(0.0..1.0) < keep);
             mesh
         }
         _ => {
-            let (a, b, c) = (r.point(), r.point(), r.point());
-            let flat = r.power(-18.0, 0.0);
-            let corners = [a, b, a + (b - a) * r.between(0.0, 1.0) + flat * c];
+            let (a, b, c) = (point(r), point(r), point(r));
+            let flat = r.log_within(-18.0..0.0);
+            let corners = [a, b, a + (b - a) * r.within(0.0..1.0) + flat * c];
             TriMesh { vertices: corners.map(|p| p.to_array()).to_vec(), triangles: vec![[0, 1, 2]] }
         }
     }
