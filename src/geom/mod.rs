@@ -1,6 +1,7 @@
 //! Geometry below everything else: points, triangles and pairs of them, swept spheres, roots, predicates, small matrices.
 
 pub mod aabb;
+pub mod box_tree;
 pub mod lanes;
 pub mod predicates;
 pub mod roots;

@@ -1,11 +1,11 @@
 //! The exact tests of what was not made by the contour alone.
 
 use super::unsuitable::PatchError;
+use crate::geom::box_tree::BoxTree;
 use crate::geom::predicates::projection_axis;
 use crate::geom::triangle_pair::meeting_point;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};
-use crate::verify::boxes::BoxTree;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::cmp::Ordering;

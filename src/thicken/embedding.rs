@@ -4,10 +4,10 @@
 //! area, stay on their side, and meet neither another triangle nor each other, by exact predicates on the coordinates that
 //! will be written. So the solid is embedded afterwards, whatever it was moved for.
 
+use crate::geom::box_tree::BoxTree;
 use crate::geom::predicates::projection_axis;
 use crate::geom::triangle_pair::meeting_point;
 use crate::mesh::TriMesh;
-use crate::verify::boxes::BoxTree;
 use glam::DVec3;
 use rayon::prelude::*;
 

@@ -1,11 +1,11 @@
 //! Strips that meet nothing, by exact tests.
 
 use super::ribbon::{Ribbon, Step};
+use crate::geom::box_tree::BoxTree;
 use crate::geom::predicates::projection_axis;
 use crate::geom::triangle_pair::meeting_point;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};
-use crate::verify::boxes::BoxTree;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::{BTreeSet, HashSet};

@@ -6,11 +6,11 @@
 
 use super::boundary::Boundary;
 use super::cap::Polygon;
+use crate::geom::box_tree::BoxTree;
 use crate::geom::predicates::projection_axis;
 use crate::geom::triangle_pair::meeting_point;
 use crate::mesh::{Topology, TriMesh};
 use crate::run::{Cancelled, RunSettings};
-use crate::verify::boxes::BoxTree;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};

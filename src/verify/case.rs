@@ -1,12 +1,12 @@
 //! What all parts of a verification look at: INPUT with its distance, OUTPUT with its tree, the scale.
 
-use super::boxes::BoxTree;
 use super::sampling::{Random, Scale};
 use super::settings::{Subject, VerifyError, VerifySettings, Which};
 use super::welded::{Welded, check};
 use crate::distance::SignedDistance;
 use crate::error::Error;
 use crate::geom::aabb::Aabb;
+use crate::geom::box_tree::BoxTree;
 use crate::mesh::{Topology, TriMesh, clean, measure};
 use crate::offset::Length;
 use crate::run::RunSettings;

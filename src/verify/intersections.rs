@@ -1,8 +1,8 @@
 //! Intersecting pairs of triangles.
 
-use super::boxes::BoxTree;
 use super::report::{IntersectingPair, IntersectionReport};
 use super::welded::Welded;
+use crate::geom::box_tree::BoxTree;
 use crate::geom::triangle_pair;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};

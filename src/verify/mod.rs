@@ -14,7 +14,6 @@
 //! given. The other figures are taken at samples, which depend on the seed alone: a report is the same for
 //! every number of threads.
 
-pub(crate) mod boxes;
 mod case;
 mod creases;
 mod distance_error;
@@ -41,9 +40,9 @@ pub use settings::{
 };
 
 use crate::error::Error;
+use crate::geom::box_tree::BoxTree;
 use crate::mesh::TriMesh;
 use crate::run::RunSettings;
-use boxes::BoxTree;
 use case::{Case, Meshes};
 use rayon::prelude::*;
 use welded::Welded;
