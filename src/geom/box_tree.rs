@@ -1,11 +1,12 @@
-//! A tree of boxes over triangles in the order of a space-filling curve: for pairs of triangles that are near
-//! each other, for those near a point, and for an order in which neighbours in space follow each other.
+//! A tree of axis-aligned boxes over triangles, in the order of a space-filling curve.
 //!
-//! The swept spheres of [`Ssvh`](crate::ssvh::Ssvh) fit tighter but take ten times as long to build, and
-//! touching triangles need closed boxes without slack.
+//! The tree finds pairs of triangles that are near each other and triangles near a point. Its order
+//! puts neighbours in space next to each other.
+//!
+//! The swept sphere volumes of `ssvh` fit tighter but take ten times as long to build. Touching
+//! triangles need closed boxes without slack.
 
 use crate::geom::aabb::Aabb;
-use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -16,7 +17,7 @@ const LEAF: usize = 8;
 /// Children per node.
 const WIDTH: usize = 8;
 
-/// Leaves that are compared with the tree between two looks at the cancel token.
+/// Leaves in a task. Each task looks at the cancel token once.
 const LEAVES_PER_TASK: usize = 256;
 
 /// A closed box in f32, rounded outward.
@@ -36,6 +37,7 @@ impl Box32 {
         })
     }
 
+    /// Returns the box around both boxes.
     fn with(self, other: Box32) -> Box32 {
         Box32 {
             lo: std::array::from_fn(|a| self.lo[a].min(other.lo[a])),
@@ -43,6 +45,7 @@ impl Box32 {
         }
     }
 
+    /// Whether the boxes have a point in common.
     #[inline(always)]
     fn meets(&self, other: &Box32) -> bool {
         // No short cuts: six comparisons side by side are faster than branches.
@@ -55,45 +58,51 @@ impl Box32 {
     }
 }
 
-/// The largest f32 not above `x`.
+/// Returns the largest f32 that is not above `x`.
 fn below(x: f64) -> f32 {
     let rounded = x as f32;
     if f64::from(rounded) > x { rounded.next_down() } else { rounded }
 }
 
-/// The smallest f32 not below `x`.
+/// Returns the smallest f32 that is not below `x`.
 fn above(x: f64) -> f32 {
     -below(-x)
 }
 
-/// The tree.
+/// Tree of boxes over some triangles of a mesh.
 #[derive(Debug)]
 pub(crate) struct BoxTree {
-    /// Triangle numbers along the curve.
+    /// Triangle numbers in the order of the curve.
     order: Vec<u32>,
-    /// Their boxes, in the same order.
+    /// Boxes of the triangles, parallel to `order`.
     boxes: Vec<Box32>,
-    /// From the leaves up to the root: box i of a level is around boxes 8 i to 8 i + 7 of the one below, or of
-    /// `boxes`.
+    /// Levels of boxes from the leaves up to the root. Box i of a level is around the boxes 8 i to
+    /// 8 i + 7 of the level below. The lowest level is around `boxes`.
     levels: Vec<Vec<Box32>>,
 }
 
 impl BoxTree {
-    /// A tree over the given triangles of a mesh. Runs on the current rayon pool.
-    pub fn new(mesh: &TriMesh, triangles: impl IndexedParallelIterator<Item = u32>) -> Self {
-        let bounds = Aabb::around(mesh.vertices.iter().map(|&v| DVec3::from(v)));
+    /// Builds the tree over the triangles numbered `chosen` of a mesh with `vertices` and `triangles`.
+    /// Runs on the current rayon pool.
+    pub fn new(
+        vertices: &[[f64; 3]],
+        triangles: &[[u32; 3]],
+        chosen: impl IndexedParallelIterator<Item = u32>,
+    ) -> Self {
+        let corners = |t: u32| triangles[t as usize].map(|v| vertices[v as usize]);
+        let bounds = Aabb::around(vertices.iter().map(|&v| DVec3::from(v)));
         // 21 bits per axis fill the 63 bits of a key.
         let scale = f64::from(1 << 21) / bounds.size().max_element().max(f64::MIN_POSITIVE);
-        let mut keyed: Vec<(u64, u32)> = triangles
+        let mut keyed: Vec<(u64, u32)> = chosen
             .map(|t| {
-                let [a, b, c] = mesh.corners(t as usize).map(DVec3::from);
+                let [a, b, c] = corners(t).map(DVec3::from);
                 let cell = ((a + b + c) / 3.0 - bounds.lo) * scale;
                 (cell.to_array().iter().fold(0, |key, &x| key << 1 | spread(x as u64)), t)
             })
             .collect();
         keyed.par_sort_unstable();
         let order: Vec<u32> = keyed.par_iter().map(|&(_, t)| t).collect();
-        let boxes: Vec<Box32> = order.par_iter().map(|&t| Box32::around(mesh.corners(t as usize))).collect();
+        let boxes: Vec<Box32> = order.par_iter().map(|&t| Box32::around(corners(t))).collect();
         let mut levels = vec![enclosing(&boxes, LEAF)];
         while levels[levels.len() - 1].len() > 1 {
             levels.push(enclosing(&levels[levels.len() - 1], WIDTH));
@@ -101,17 +110,18 @@ impl BoxTree {
         BoxTree { order, boxes, levels }
     }
 
-    /// Triangle numbers in an order in which neighbours follow each other.
+    /// Triangle numbers in the order of the curve: neighbours in space are near each other.
     pub fn order(&self) -> &[u32] {
         &self.order
     }
 
-    /// Calls `visit` with each triangle whose box comes within `margin` of `p`.
+    /// Calls `visit` with each triangle whose box meets the cube of half-width `margin` around `p`.
     pub fn near(&self, p: DVec3, margin: f64, visit: impl FnMut(u32)) {
         self.meeting([p - margin, p + margin], visit);
     }
 
-    /// Calls `visit` with each triangle whose box meets the one with these corners, the lower one first.
+    /// Calls `visit` with each triangle whose box meets the box with these corners, the lower corner
+    /// first.
     pub fn meeting(&self, corners: [DVec3; 2], mut visit: impl FnMut(u32)) {
         let query = Box32::around(corners.map(|c| c.to_array()));
         self.leaves(&query, 0, &mut Vec::new(), |leaf| {
@@ -123,7 +133,7 @@ impl BoxTree {
         });
     }
 
-    /// Lets the box at a position of [`order`](Self::order) hold what is between these corners, too.
+    /// Extends the box at a position of [`order`](Self::order) by the box with these corners.
     pub fn grow(&mut self, position: usize, corners: [DVec3; 2]) {
         let more = Box32::around(corners.map(|c| c.to_array()));
         self.boxes[position] = self.boxes[position].with(more);
@@ -134,8 +144,10 @@ impl BoxTree {
         }
     }
 
-    /// Finds all pairs of triangles whose boxes meet. Each task has a result of its own, made by `start` and
-    /// changed by `visit`; the results are given back in the order of the curve.
+    /// Finds all pairs of triangles whose boxes meet.
+    ///
+    /// Each task has a result of its own: `start` makes it, `visit` changes it. The results come in
+    /// the order of the curve.
     ///
     /// # Errors
     /// [`Cancelled`].
@@ -162,6 +174,7 @@ impl BoxTree {
             .collect()
     }
 
+    /// Calls `visit` with the pairs between two leaves, the lower triangle number first.
     fn pairs_of_leaves(&self, leaf: usize, other: usize, mut visit: impl FnMut(u32, u32)) {
         for j in self.leaf(other) {
             let second = &self.boxes[j];
@@ -178,12 +191,12 @@ impl BoxTree {
         }
     }
 
-    /// Positions of the triangles of a leaf.
+    /// Returns the positions of a leaf's triangles.
     fn leaf(&self, leaf: usize) -> std::ops::Range<usize> {
         leaf * LEAF..((leaf + 1) * LEAF).min(self.order.len())
     }
 
-    /// Calls `visit` with each leaf from `first` on whose box meets `query`. The stack is scratch.
+    /// Calls `visit` with each leaf from `first` on whose box meets `query`. `stack` is scratch space.
     fn leaves(
         &self,
         query: &Box32,
@@ -212,11 +225,12 @@ impl BoxTree {
     }
 }
 
+/// Returns the boxes around each `width` boxes.
 fn enclosing(boxes: &[Box32], width: usize) -> Vec<Box32> {
     boxes.par_chunks(width).map(|c| c.iter().fold(Box32::EMPTY, |all, &b| all.with(b))).collect()
 }
 
-/// The 21 low bits with two zeros between each.
+/// Spreads the 21 low bits of `x`, with two zeros between neighbours.
 fn spread(x: u64) -> u64 {
     let x = x.min((1 << 21) - 1);
     let x = (x | x << 32) & 0x001f_0000_0000_ffff;

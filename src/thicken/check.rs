@@ -17,7 +17,8 @@ pub(super) fn check_patch(patch: &TriMesh, run: &RunSettings) -> Result<Result<(
     if let Some(t) = (0..patch.triangles.len()).into_par_iter().find_first(is_flat) {
         return Ok(Err(PatchError::Degenerate { triangle: t as u32, at: patch.corners(t)[0] }));
     }
-    let tree = BoxTree::new(patch, (0..patch.triangles.len() as u32).into_par_iter());
+    let tree =
+        BoxTree::new(&patch.vertices, &patch.triangles, (0..patch.triangles.len() as u32).into_par_iter());
     let found = first_pair(patch, &tree, run)?;
     Ok(found.map_or(Ok(()), |(triangles, at)| Err(PatchError::Intersects { triangles, at })))
 }

@@ -26,7 +26,8 @@ pub(super) struct Embedding<'a> {
 impl<'a> Embedding<'a> {
     /// `mesh` must be free of intersections.
     pub fn new(mesh: &'a mut TriMesh, reach: f64) -> Embedding<'a> {
-        let tree = BoxTree::new(mesh, (0..mesh.triangles.len() as u32).into_par_iter());
+        let tree =
+            BoxTree::new(&mesh.vertices, &mesh.triangles, (0..mesh.triangles.len() as u32).into_par_iter());
         let mut positions = vec![0; mesh.triangles.len()];
         (0..).zip(tree.order()).for_each(|(position, &t)| positions[t as usize] = position);
         Embedding { mesh, tree, positions, reach }

@@ -167,7 +167,8 @@ fn costlier_of_pairs(
     ribbons: &[Ribbon],
     run: &RunSettings,
 ) -> Result<Vec<(usize, Step)>, Cancelled> {
-    let own = BoxTree::new(strip, (0..strip.triangles.len() as u32).into_par_iter());
+    let own =
+        BoxTree::new(&strip.vertices, &strip.triangles, (0..strip.triangles.len() as u32).into_par_iter());
     let pairs = own.pairs(run, Vec::new, |found: &mut Vec<[u32; 2]>, a, b| {
         let (va, vb) = (strip.triangles[a as usize], strip.triangles[b as usize]);
         if meeting_point(va, strip.corners(a as usize), vb, strip.corners(b as usize)).is_some() {

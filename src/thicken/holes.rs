@@ -100,7 +100,11 @@ impl<'a> Holes<'a> {
         if which.is_empty() {
             return Ok(Capped { mesh, places });
         }
-        let tree = BoxTree::new(patch, (0..patch.triangles.len() as u32).into_par_iter());
+        let tree = BoxTree::new(
+            &patch.vertices,
+            &patch.triangles,
+            (0..patch.triangles.len() as u32).into_par_iter(),
+        );
         let which: Vec<usize> = which.iter().copied().collect();
         let caps: Vec<Option<Vec<[u32; 3]>>> = which
             .par_iter()
@@ -118,7 +122,11 @@ impl<'a> Holes<'a> {
             }
         }
         let first = patch.triangles.len() as u32;
-        let tree = BoxTree::new(&mesh, (first..mesh.triangles.len() as u32).into_par_iter());
+        let tree = BoxTree::new(
+            &mesh.vertices,
+            &mesh.triangles,
+            (first..mesh.triangles.len() as u32).into_par_iter(),
+        );
         let pairs = tree.pairs(run, Vec::new, |found: &mut Vec<[usize; 2]>, a, b| {
             let [p, q] = [a, b].map(|t| owners[(t - first) as usize]);
             let [va, vb] = [a, b].map(|t| mesh.triangles[t as usize]);

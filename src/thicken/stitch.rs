@@ -219,7 +219,7 @@ pub(super) fn stitch(
         .filter(|&t| t < patch_count || open.kept[t - patch_count])
         .map(|t| t as u32)
         .collect();
-    let tree = BoxTree::new(&mesh, with_section.into_par_iter());
+    let tree = BoxTree::new(&mesh.vertices, &mesh.triangles, with_section.into_par_iter());
     // What meets the patch near a rim goes; the ribbon takes its place.
     let meeting = super::check::meeting_patch(&mesh, &tree, patch_count as u32, run)?;
     if !meeting.is_empty() {

@@ -76,9 +76,15 @@ impl<'m> Case<'m> {
     ) -> Result<Self, Error> {
         let distance = SignedDistance::new(&meshes.input, &meshes.input_topology);
         run.check()?;
-        let tree = BoxTree::new(&meshes.output.mesh, meshes.output.with_area().into_par_iter());
+        let tree = BoxTree::new(
+            &meshes.output.mesh.vertices,
+            &meshes.output.mesh.triangles,
+            meshes.output.with_area().into_par_iter(),
+        );
         let all = 0..meshes.input.triangles.len() as u32;
-        let input_order = BoxTree::new(&meshes.input, all.into_par_iter()).order().to_vec();
+        let input_order = BoxTree::new(&meshes.input.vertices, &meshes.input.triangles, all.into_par_iter())
+            .order()
+            .to_vec();
         let diagonal = Aabb::around(meshes.input.vertices.iter().map(|&v| DVec3::from(v))).diagonal();
         let r = match settings.distance {
             Length::Units(r) => r,

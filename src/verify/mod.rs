@@ -114,7 +114,8 @@ pub fn intersections(mesh: &TriMesh, run: &RunSettings) -> Result<IntersectionRe
 }
 
 fn intersections_of(welded: &Welded, run: &RunSettings) -> Result<IntersectionReport, Error> {
-    let tree = BoxTree::new(&welded.mesh, welded.with_area().into_par_iter());
+    let tree =
+        BoxTree::new(&welded.mesh.vertices, &welded.mesh.triangles, welded.with_area().into_par_iter());
     Ok(intersections::intersections(welded, &tree, run)?)
 }
 
