@@ -1,16 +1,14 @@
 //! The active cells: their cases and the vertices of their sheets.
 
-use super::ContourStatistics;
-use super::cell::Edge;
-use super::features::{Bend, Features};
-use super::grid::Grid;
-use super::leaf_vertices::LeafVertices;
-use super::numbering::{CellId, CellNumbers};
-use super::recover::Wish;
-use super::sheets::{Case, CaseId, CaseTable};
-use super::surface::Surface;
-use super::vertex_set::VertexSet;
 use crate::band::{LeafId, SignField};
+use crate::contour::ContourStatistics;
+use crate::contour::cell::{Case, CaseId, CaseTable, CellId, CellNumbers, Edge};
+use crate::contour::features::{Bend, Features};
+use crate::contour::grid::Grid;
+use crate::contour::leaf_vertices::LeafVertices;
+use crate::contour::recover::Wish;
+use crate::contour::surface::Surface;
+use crate::contour::vertex_set::VertexSet;
 use crate::edge::Crossings;
 use crate::run::{Cancelled, PhaseGuard, SHARE};
 use crate::slab::Slab;
@@ -39,7 +37,7 @@ pub struct Cells<'a> {
     /// elsewhere.
     pub jumps: VertexSet,
     cases: Vec<CellCase>,
-    /// By leaf, whether any of its cells is crowded ([`CornerSigns::crowded`](super::numbering::CornerSigns::crowded)).
+    /// By leaf, whether any of its cells is crowded ([`CornerSigns::crowded`](super::cell::CornerSigns::crowded)).
     crowded: Vec<bool>,
 }
 

@@ -1,14 +1,14 @@
 //! The time that choosing and making the triangles takes, by method (\[LW11\] Table VI).
 
-use super::cells::Cells;
-use super::edge_polygon::{EdgePolygon, for_polygons};
-use super::envelope::Envelope;
-use super::features::Sides;
-use super::grid::Grid;
-use super::numbering::CellNumbers;
-use super::polygonize::{Cut, CutMethod, Fit, Polygon, polygonize};
-use super::{ContourError, ContourSettings, face_vertex, reach};
 use crate::band::{Lattice, SignField};
+use crate::contour::cell::CellNumbers;
+use crate::contour::cells::Cells;
+use crate::contour::edge_polygon::{EdgePolygon, for_polygons};
+use crate::contour::envelope::Envelope;
+use crate::contour::features::Sides;
+use crate::contour::grid::Grid;
+use crate::contour::polygonize::{Cut, CutMethod, Fit, Polygon, polygonize};
+use crate::contour::{ContourError, ContourSettings, face_vertex, reach};
 use crate::edge::Crossings;
 use crate::run::{Phase, RunSettings};
 use crate::slab::Slab;

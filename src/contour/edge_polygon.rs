@@ -1,13 +1,13 @@
 //! The polygon around each crossed grid edge: the vertices of the four cells around it, and face vertices between them.
 
-use super::cell::Edge;
-use super::cells::Cells;
-use super::envelope::Envelope;
-use super::face_vertex::FaceVertices;
-use super::features::Sides;
-use super::leaf_cells::LeafCells;
-use super::polygonize::{Fit, Polygon, PolygonCorner};
 use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, bits};
+use crate::contour::cell::Edge;
+use crate::contour::cells::Cells;
+use crate::contour::envelope::Envelope;
+use crate::contour::face_vertex::FaceVertices;
+use crate::contour::features::Sides;
+use crate::contour::leaf_cells::LeafCells;
+use crate::contour::polygonize::{Fit, Polygon, PolygonCorner};
 use crate::edge::EdgeId;
 
 /// The polygon around a crossed edge, and what decides how it is cut.

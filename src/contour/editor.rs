@@ -1,15 +1,15 @@
 //! Changes of a finished mesh that bring it nearer to the surface: which to try. Whether they are made decides the
 //! exact test of `patch`.
 
-use super::answers::Answers;
-use super::cells::Cells;
-use super::feature::{Asker, feature_between, nearest};
-use super::features::{Features, Sides};
-use super::grid::Grid;
-use super::patch::{Patch, PatchEdge, PatchTriangle};
-use super::qef::{cross, dot};
-use super::surface::Surface;
-use super::vertex_set::VertexSet;
+use crate::contour::answers::Answers;
+use crate::contour::cells::Cells;
+use crate::contour::feature::{Asker, feature_between, nearest};
+use crate::contour::features::{Features, Sides};
+use crate::contour::grid::Grid;
+use crate::contour::patch::{Patch, PatchEdge, PatchTriangle};
+use crate::contour::qef::{cross, dot};
+use crate::contour::surface::Surface;
+use crate::contour::vertex_set::VertexSet;
 
 type Point = [f64; 3];
 

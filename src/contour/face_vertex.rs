@@ -13,14 +13,12 @@
 //!     c ------ n1
 //! ```
 
-use super::cell::{Corner, Edge, Face};
-use super::cells::Cells;
-use super::grid::Grid;
-use super::numbering::{CellId, CellNumbers, locate};
-use super::sheets::{Case, Pair};
-use super::vertex::is_missing;
-use super::{ContourError, TooManyVertices};
 use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, SignField, bits};
+use crate::contour::cell::{Case, CellId, CellNumbers, Corner, Edge, Face, Pair, locate};
+use crate::contour::cells::Cells;
+use crate::contour::grid::Grid;
+use crate::contour::vertex::is_missing;
+use crate::contour::{ContourError, TooManyVertices};
 use crate::edge::Crossings;
 use crate::geom::predicates::orient3d;
 use crate::run::{Cancelled, RunSettings, SHARE};

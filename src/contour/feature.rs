@@ -11,9 +11,9 @@
 //!           \ /                     x                    x                       else go on with the piece that is nearer
 //! ```
 
-use super::planes::{Normals, ONE_SIDE, Plane, Planes, Samples, sides};
-use super::qef::{along, distance2, dot};
-use super::surface::Surface;
+use crate::contour::planes::{Normals, ONE_SIDE, Plane, Planes, Samples, sides};
+use crate::contour::qef::{along, distance2, dot};
+use crate::contour::surface::Surface;
 
 type Point = [f64; 3];
 

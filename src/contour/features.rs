@@ -1,10 +1,10 @@
 //! The vertices on creases and corners, found by number, and what they say of the surface around them.
 
-use super::feature::Feature;
-use super::planes::MAX_PLANES;
-use super::qef::dot;
-use super::surface::{Creases, Surface};
-use super::vertex_set::VertexSet;
+use crate::contour::feature::Feature;
+use crate::contour::planes::MAX_PLANES;
+use crate::contour::qef::dot;
+use crate::contour::surface::{Creases, Surface};
+use crate::contour::vertex_set::VertexSet;
 
 type Point = [f64; 3];
 

@@ -1,13 +1,11 @@
 //! The vertices of the cells around the edges of one leaf, in a plain array: each cell is asked for by up to twelve
 //! edges, and finding it among all cells takes longer than what is done with it.
 
-use super::beside::beside;
-use super::cell::Edge;
-use super::cells::{CellCase, Cells};
-use super::face_vertex::FaceVertices;
-use super::numbering::CellId;
-use super::sheets::CaseTable;
 use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, bits};
+use crate::contour::beside::beside;
+use crate::contour::cell::{CaseTable, CellId, Edge};
+use crate::contour::cells::{CellCase, Cells};
+use crate::contour::face_vertex::FaceVertices;
 
 /// Cells along each axis: those of the leaf, and the last ones of the leaf before.
 const SIDE: usize = LEAF_DIM as usize + 1;

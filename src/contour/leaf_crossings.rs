@@ -1,8 +1,8 @@
 //! The crossings of the edges of a leaf's cells, in a plain array: each crossing is asked for by up to four cells.
 
-use super::beside::beside;
-use super::cell::Edge;
 use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, SignField, bits};
+use crate::contour::beside::beside;
+use crate::contour::cell::Edge;
 use crate::edge::{Crossing, Crossings, EdgeId};
 
 /// Nodes along each axis: those of the leaf, and the first ones of the next.

@@ -1,15 +1,14 @@
 //! The vertices of the cells of one leaf.
 
-use super::cells::{CellCase, Cells};
-use super::features::FeatureVertex;
-use super::leaf_crossings::LeafCrossings;
-use super::numbering::{CornerSigns, constant_case};
-use super::planes::Normals;
-use super::recover::Wish;
-use super::sheets::{Case, CaseTable};
-use super::smooth::{Batch, LANES};
-use super::vertex::{self, Placement, sample};
 use crate::band::{Ijk, LeafId, bits};
+use crate::contour::cell::{Case, CaseTable, CornerSigns, constant_case};
+use crate::contour::cells::{CellCase, Cells};
+use crate::contour::features::FeatureVertex;
+use crate::contour::leaf_crossings::LeafCrossings;
+use crate::contour::planes::Normals;
+use crate::contour::recover::Wish;
+use crate::contour::smooth::{Batch, LANES};
+use crate::contour::vertex::{self, Placement, sample};
 
 /// What is found of a leaf's cells besides the positions of their vertices.
 #[derive(Debug, Default)]

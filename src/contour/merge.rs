@@ -1,9 +1,9 @@
 //! Edges merged to a vertex where another change is in the way.
 
-use super::editor::{Editor, middle};
-use super::features::{FeatureVertex, Sides};
-use super::patch::PatchTriangle;
-use super::qef::{along, cross, distance2, dot};
+use crate::contour::editor::{Editor, middle};
+use crate::contour::features::{FeatureVertex, Sides};
+use crate::contour::patch::PatchTriangle;
+use crate::contour::qef::{along, cross, distance2, dot};
 use crate::geom::triangle::Triangle;
 use glam::DVec3;
 

@@ -40,9 +40,9 @@
 //! the points where connections pass the cell's faces. On a face these triangles do not overlap, walls
 //! separate the cones of different sheets, and a disc of good triangles stays in its edge's tetrahedra.
 
+mod cell;
 mod answers;
 mod beside;
-mod cell;
 mod cells;
 mod cut_times;
 mod edge_polygon;
@@ -56,7 +56,6 @@ mod leaf_cells;
 mod leaf_crossings;
 mod leaf_vertices;
 mod merge;
-mod numbering;
 mod order;
 mod output;
 mod patch;
@@ -69,7 +68,6 @@ mod recover;
 mod refine;
 mod region;
 mod rounds;
-mod sheets;
 mod slots;
 mod smooth;
 mod statistics;
@@ -85,13 +83,13 @@ pub use statistics::ContourStatistics;
 pub use surface::{Creases, Surface};
 
 use crate::band::{LEAF_DIM, Lattice, SignField};
+use crate::contour::cell::CellNumbers;
 use crate::edge::Crossings;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, Phase, RunSettings};
 use crate::slab::Slab;
 use cells::{Cells, Placements};
 use grid::Grid;
-use numbering::CellNumbers;
 use output::Triangulation;
 use recover::Wish;
 use rounds::LeafMesh;

@@ -1,16 +1,16 @@
 //! The polygons around all crossed edges, cut into triangles and collected to a mesh.
 
-use super::cells::{Cells, split};
-use super::edge_polygon::{EdgePolygon, for_polygons, on_axis};
-use super::face_vertex::FaceVertices;
-use super::feature::Asker;
-use super::order::VertexRun;
-use super::polygonize::{Cut, CutMethod, EDGE_VERTEX, Fit, polygonize};
-use super::rounds::{AXIS, LeafMesh};
-use super::slots::{Slots, Triangles};
-use super::vertex::is_missing;
-use super::{ContourError, ContourStatistics, TooManyVertices};
 use crate::band::LeafId;
+use crate::contour::cells::{Cells, split};
+use crate::contour::edge_polygon::{EdgePolygon, for_polygons, on_axis};
+use crate::contour::face_vertex::FaceVertices;
+use crate::contour::feature::Asker;
+use crate::contour::order::VertexRun;
+use crate::contour::polygonize::{Cut, CutMethod, EDGE_VERTEX, Fit, polygonize};
+use crate::contour::rounds::{AXIS, LeafMesh};
+use crate::contour::slots::{Slots, Triangles};
+use crate::contour::vertex::is_missing;
+use crate::contour::{ContourError, ContourStatistics, TooManyVertices};
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, PhaseGuard, SHARE};
 use rayon::prelude::*;

@@ -1,9 +1,9 @@
 //! From the polygon around a crossed grid edge to triangles.
 
-use super::envelope::Envelope;
-use super::features::Sides;
-use super::polygon_edges;
-use super::qef::dot;
+use crate::contour::envelope::Envelope;
+use crate::contour::features::Sides;
+use crate::contour::polygon_edges;
+use crate::contour::qef::dot;
 
 /// Four cell vertices, and a face vertex between any two of them.
 const MAX_CORNERS: usize = 8;

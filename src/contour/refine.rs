@@ -4,12 +4,12 @@
 //! split at the worst place, with a new vertex on the surface or on its crease, as often as it takes; each change is
 //! made only if the mesh stays embedded (see `patch`).
 
-use super::cells::Cells;
-use super::editor::Editor;
-use super::patch::Bounds;
-use super::rounds::LeafMesh;
-use super::surface::Surface;
 use crate::band::LeafId;
+use crate::contour::cells::Cells;
+use crate::contour::editor::Editor;
+use crate::contour::patch::Bounds;
+use crate::contour::rounds::LeafMesh;
+use crate::contour::surface::Surface;
 use crate::run::{Cancelled, RunSettings};
 
 /// Passes over the mesh. Each halves the edges that are too far, so that the error of smooth parts shrinks to a

@@ -1,9 +1,8 @@
 //! Where the vertex of a sheet may lie: its cell, and in a cell with several sheets its side of the walls.
 
-use super::cell::{Corner, Edge};
-use super::qef::HalfSpace;
-use super::sheets::{Case, MAX_SHEETS, SheetKind};
 use crate::band::Axis;
+use crate::contour::cell::{Case, Corner, Edge, MAX_SHEETS, SheetKind};
+use crate::contour::qef::HalfSpace;
 
 /// The most half-spaces of a region: the six sides of the cell and a wall per sheet.
 const MAX_HALF_SPACES: usize = 6 + MAX_SHEETS;
@@ -97,7 +96,7 @@ fn cut(corner: Corner, axes: &[Axis]) -> HalfSpace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contour::sheets::{CaseTable, FaceChoice};
+    use crate::contour::cell::{CaseTable, FaceChoice};
 
     #[test]
     fn walls_pass_through_the_neighbours() {

@@ -1,11 +1,11 @@
 //! A finished mesh changed leaf by leaf: leaves that are far enough apart not to touch the same triangles are worked
 //! on together, in eight rounds, so that the result does not depend on the number of threads.
 
-use super::cells::Cells;
-use super::feature::REACH;
-use super::order::VertexRun;
-use super::patch::{Bounds, Changes, NEW_TRIANGLE, NEW_VERTEX, Patch};
 use crate::band::LeafId;
+use crate::contour::cells::Cells;
+use crate::contour::feature::REACH;
+use crate::contour::order::VertexRun;
+use crate::contour::patch::{Bounds, Changes, NEW_TRIANGLE, NEW_VERTEX, Patch};
 use crate::lattice::{Ijk, LEAF_DIM};
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};

@@ -12,9 +12,9 @@
 //! the two by two matrix, where its eigenvalues are above the [`CUTOFF`] of [`qef`](super::qef). What is not smooth is
 //! left to [`vertex`](super::vertex).
 
-use super::feature::SPREAD;
-use super::qef::CUTOFF;
-use super::vertex::UNSURE;
+use crate::contour::feature::SPREAD;
+use crate::contour::qef::CUTOFF;
+use crate::contour::vertex::UNSURE;
 use crate::geom::lanes::{F64s, M64s, P64s, in_lanes};
 use pulp::{Simd, WithSimd};
 

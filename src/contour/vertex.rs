@@ -1,15 +1,14 @@
 //! The vertex of a sheet: as close to the minimiser of its quadratic error function as its cell and its
 //! walls allow.
 
-use super::cell::{Edge, EdgeSet};
-use super::feature::{Asker, Feature, SPREAD, feature, nearest};
-use super::grid::Grid;
-use super::planes::{Normals, Samples};
-use super::qef::{Minimiser, Qef, along};
-use super::region::Region;
-use super::sheets::Case;
-use super::surface::Surface;
 use crate::band::Ijk;
+use crate::contour::cell::{Case, Edge, EdgeSet};
+use crate::contour::feature::{Asker, Feature, SPREAD, feature, nearest};
+use crate::contour::grid::Grid;
+use crate::contour::planes::{Normals, Samples};
+use crate::contour::qef::{Minimiser, Qef, along};
+use crate::contour::region::Region;
+use crate::contour::surface::Surface;
 use crate::edge::Crossing;
 
 /// After rounding, a vertex keeps at least this share of the margin. The margin is 2 units in the last place

@@ -1,6 +1,6 @@
 //! Surfaces with known answers.
 
-use super::fields::{Implicit, run, sample};
+use crate::contour::tests::fields::{Implicit, run, sample};
 use crate::contour::{ContourError, ContourSettings, Lattice, Precision, contour};
 use crate::mesh::TriMesh;
 use crate::run::RunSettings;

@@ -1,8 +1,8 @@
 //! The promise does not depend on what the surface answers: surfaces that lie, on random lattices.
 
-use super::fields::{Random, run_with};
-use super::random::{PLACES, is_heavy, lattice};
 use crate::band::Ijk;
+use crate::contour::tests::fields::{Random, run_with};
+use crate::contour::tests::random::{PLACES, is_heavy, lattice};
 use crate::contour::{ContourStatistics, Creases, Surface};
 use crate::verify::tests::audit::audit;
 

@@ -1,7 +1,7 @@
 //! Random lattices made to be nasty, each judged by the exact audit.
 
-use super::fields::{Random, crossings, cut_by, run, signs};
 use crate::band::{Axis, Ijk, SignField};
+use crate::contour::tests::fields::{Random, crossings, cut_by, run, signs};
 use crate::contour::{ContourSettings, ContourStatistics, CutMethod, Precision, cut_times};
 use crate::edge::{Crossing, Crossings};
 use crate::verify::tests::audit::audit;

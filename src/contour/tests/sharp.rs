@@ -1,6 +1,6 @@
 //! Creases and corners of polyhedra, given as surfaces to ask.
 
-use super::fields::{Implicit, Random, run_with, sample};
+use crate::contour::tests::fields::{Implicit, Random, run_with, sample};
 use crate::contour::{ContourStatistics, Creases, Precision, Surface};
 use crate::mesh::TriMesh;
 use crate::verify::tests::audit::audit;

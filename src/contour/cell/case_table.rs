@@ -13,7 +13,7 @@
 //!                                                  wall: through the four neighbours of its ends
 //! ```
 
-use super::cell::{Corner, Edge, EdgeSet, Face};
+use super::topology::{Corner, Edge, EdgeSet, Face};
 use std::sync::LazyLock;
 
 /// The most sheets that a cell can have: the four caps of a checkerboard.

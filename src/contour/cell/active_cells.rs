@@ -3,9 +3,9 @@
 //! A cell belongs to the leaf of its lowest corner and has that corner's number in it. It is active when
 //! its corners have both signs.
 
-use super::sheets::{CaseId, CaseTable, FaceChoice};
-use super::{ContourError, TooManyVertices};
+use super::case_table::{CaseId, CaseTable, FaceChoice};
 use crate::band::{LeafId, LeafMask, SignField, Z_FIRST, Z_LAST, bits};
+use crate::contour::{ContourError, TooManyVertices};
 use crate::run::{RunSettings, SHARE};
 use rayon::prelude::*;
 
@@ -221,8 +221,8 @@ pub fn constant_case(table: &CaseTable, mask: u8) -> CaseId {
 
 #[cfg(test)]
 mod tests {
-    use super::super::cell::Face;
     use super::*;
+    use crate::contour::cell::topology::Face;
 
     #[test]
     fn cells_with_several_sheets_or_an_ambiguous_face_are_crowded() {
