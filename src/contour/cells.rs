@@ -3,12 +3,11 @@
 use crate::band::{LeafId, SignField};
 use crate::contour::ContourStatistics;
 use crate::contour::cell::{Case, CaseId, CaseTable, CellId, CellNumbers, Edge};
-use crate::contour::features::{Bend, Features};
+use crate::contour::feature::{Bend, Features, VertexSet};
 use crate::contour::grid::Grid;
 use crate::contour::leaf_vertices::LeafVertices;
 use crate::contour::recover::Wish;
 use crate::contour::surface::Surface;
-use crate::contour::vertex_set::VertexSet;
 use crate::edge::Crossings;
 use crate::run::{Cancelled, PhaseGuard, SHARE};
 use crate::slab::Slab;

@@ -5,7 +5,7 @@ use crate::contour::cell::CellNumbers;
 use crate::contour::cells::Cells;
 use crate::contour::edge_polygon::{EdgePolygon, for_polygons};
 use crate::contour::envelope::Envelope;
-use crate::contour::features::Sides;
+use crate::contour::feature::Sides;
 use crate::contour::grid::Grid;
 use crate::contour::polygonize::{Cut, CutMethod, Fit, Polygon, polygonize};
 use crate::contour::{ContourError, ContourSettings, face_vertex, reach};

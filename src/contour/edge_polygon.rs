@@ -5,7 +5,7 @@ use crate::contour::cell::Edge;
 use crate::contour::cells::Cells;
 use crate::contour::envelope::Envelope;
 use crate::contour::face_vertex::FaceVertices;
-use crate::contour::features::Sides;
+use crate::contour::feature::Sides;
 use crate::contour::leaf_cells::LeafCells;
 use crate::contour::polygonize::{Fit, Polygon, PolygonCorner};
 use crate::edge::EdgeId;

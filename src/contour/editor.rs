@@ -3,13 +3,11 @@
 
 use crate::contour::answers::Answers;
 use crate::contour::cells::Cells;
-use crate::contour::feature::{Asker, feature_between, nearest};
-use crate::contour::features::{Features, Sides};
+use crate::contour::feature::{Asker, Features, Sides, VertexSet, feature_between, nearest};
 use crate::contour::grid::Grid;
 use crate::contour::patch::{Patch, PatchEdge, PatchTriangle};
 use crate::contour::qef::{cross, dot};
 use crate::contour::surface::Surface;
-use crate::contour::vertex_set::VertexSet;
 
 type Point = [f64; 3];
 

@@ -3,9 +3,8 @@
 use crate::band::{Ijk, LeafId, bits};
 use crate::contour::cell::{Case, CaseTable, CornerSigns, constant_case};
 use crate::contour::cells::{CellCase, Cells};
-use crate::contour::features::FeatureVertex;
+use crate::contour::feature::{FeatureVertex, Normals};
 use crate::contour::leaf_crossings::LeafCrossings;
-use crate::contour::planes::Normals;
 use crate::contour::recover::Wish;
 use crate::contour::smooth::{Batch, LANES};
 use crate::contour::vertex::{self, Placement, sample};

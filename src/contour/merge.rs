@@ -1,7 +1,7 @@
 //! Edges merged to a vertex where another change is in the way.
 
 use crate::contour::editor::{Editor, middle};
-use crate::contour::features::{FeatureVertex, Sides};
+use crate::contour::feature::{FeatureVertex, Sides};
 use crate::contour::patch::PatchTriangle;
 use crate::contour::qef::{along, cross, distance2, dot};
 use crate::geom::triangle::Triangle;

@@ -40,6 +40,7 @@
 //! the points where connections pass the cell's faces. On a face these triangles do not overlap, walls
 //! separate the cones of different sheets, and a disc of good triangles stays in its edge's tetrahedra.
 
+mod feature;
 mod cell;
 mod answers;
 mod beside;
@@ -49,8 +50,6 @@ mod edge_polygon;
 mod editor;
 mod envelope;
 mod face_vertex;
-mod feature;
-mod features;
 mod grid;
 mod leaf_cells;
 mod leaf_crossings;
@@ -60,7 +59,6 @@ mod order;
 mod output;
 mod patch;
 mod pieces;
-mod planes;
 mod polygon_edges;
 mod polygonize;
 pub(crate) mod qef;
@@ -73,7 +71,6 @@ mod smooth;
 mod statistics;
 mod surface;
 mod vertex;
-mod vertex_set;
 
 pub use cut_times::{CutTimes, cut_times};
 pub use grid::Precision;

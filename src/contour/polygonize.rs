@@ -1,7 +1,7 @@
 //! From the polygon around a crossed grid edge to triangles.
 
 use crate::contour::envelope::Envelope;
-use crate::contour::features::Sides;
+use crate::contour::feature::Sides;
 use crate::contour::polygon_edges;
 use crate::contour::qef::dot;
 

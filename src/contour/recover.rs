@@ -10,7 +10,7 @@
 
 use crate::contour::cells::Cells;
 use crate::contour::editor::{Editor, mix};
-use crate::contour::features::Sides;
+use crate::contour::feature::Sides;
 use crate::contour::merge::Arrival;
 use crate::contour::patch::Bounds;
 use crate::contour::rounds::LeafMesh;

@@ -3,9 +3,8 @@
 
 use crate::band::Ijk;
 use crate::contour::cell::{Case, Edge, EdgeSet};
-use crate::contour::feature::{Asker, Feature, SPREAD, feature, nearest};
+use crate::contour::feature::{Asker, Feature, Normals, SPREAD, Samples, feature, nearest};
 use crate::contour::grid::Grid;
-use crate::contour::planes::{Normals, Samples};
 use crate::contour::qef::{Minimiser, Qef, along};
 use crate::contour::region::Region;
 use crate::contour::surface::Surface;

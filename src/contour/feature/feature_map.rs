@@ -1,10 +1,10 @@
 //! The vertices on creases and corners, found by number, and what they say of the surface around them.
 
-use crate::contour::feature::Feature;
-use crate::contour::planes::MAX_PLANES;
+use super::locate::Feature;
+use super::tangent_planes::MAX_PLANES;
+use super::vertex_set::VertexSet;
 use crate::contour::qef::dot;
 use crate::contour::surface::{Creases, Surface};
-use crate::contour::vertex_set::VertexSet;
 
 type Point = [f64; 3];
 

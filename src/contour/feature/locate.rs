@@ -11,7 +11,7 @@
 //!           \ /                     x                    x                       else go on with the piece that is nearer
 //! ```
 
-use crate::contour::planes::{Normals, ONE_SIDE, Plane, Planes, Samples, sides};
+use super::tangent_planes::{Normals, ONE_SIDE, Plane, Planes, Samples, sides};
 use crate::contour::qef::{along, distance2, dot};
 use crate::contour::surface::Surface;
 
