@@ -8,46 +8,33 @@
 //! coordinates of the chosen [`Precision`](crate::contour::Precision), and every triangle of the patch is in it. Where
 //! that cannot be had, the run fails and says where; docs/thicken.md has the argument.
 
-mod boundary;
-mod cap;
-mod check;
-mod closed;
-mod crossings;
-mod curve;
-mod edge_search;
-mod embedding;
-mod fit;
-mod holes;
-mod lattice_run;
-mod lids;
-mod memory;
-mod near_nodes;
-mod nodes;
-mod open_mesh;
-mod ribbon;
-mod rim;
-mod rods;
+mod attempt;
+mod closed_shell;
+mod error;
+mod finish;
+mod memory_estimate;
+mod patch;
 mod settings;
-mod shape;
 mod solid;
 mod statistics;
 mod stitch;
-mod unsuitable;
 
+pub use error::{Obstacle, PatchError, ThickenError};
 pub use settings::{SectionNormals, Side, ThickenSettings};
 pub use statistics::{ShapeCounts, ThickenStatistics, ThickenTimes, TriangleCounts};
-pub use unsuitable::{Obstacle, PatchError, ThickenError};
 
 use crate::error::Error;
 use crate::mesh::{Topology, TriMesh};
 use crate::run::RunSettings;
-use boundary::Boundary;
-use holes::{Capped, Holes};
-use lattice_run::{Surface, Work};
+
+use attempt::{Surface, Work};
+use error::Blocked;
+use finish::shape::Shaped;
+use patch::boundary::Boundary;
+use patch::holes::{Capped, Holes};
+use patch::intersections;
 use settings::Resolved;
-use shape::Shaped;
 use std::time::Instant;
-use unsuitable::Blocked;
 
 /// What [`thicken`] returns.
 #[derive(Debug)]
@@ -80,8 +67,9 @@ pub fn thicken(
     let started = Instant::now();
     let patch = as_written(patch, settings);
     let topology = run.install(|| Topology::new(&patch));
-    let (boundary, checked) =
-        run.install(|| rayon::join(|| Boundary::new(&patch, &topology), || check::check_patch(&patch, run)));
+    let (boundary, checked) = run.install(|| {
+        rayon::join(|| Boundary::new(&patch, &topology), || intersections::check_patch(&patch, run))
+    });
     let boundary = boundary.map_err(ThickenError::from)?;
     checked?.map_err(ThickenError::from)?;
     let holes = Holes::new(&patch, &topology, &boundary);

@@ -8,7 +8,7 @@ const MOST: usize = 160;
 
 /// A polygon to be closed.
 #[derive(Clone, Debug)]
-pub(super) struct Polygon {
+pub(crate) struct Polygon {
     /// Vertex numbers, in the direction in which the cap's triangles run. A vertex may be there twice.
     pub vertices: Vec<u32>,
     /// Positions.

@@ -1,8 +1,8 @@
 //! Where lattice edges leave the solid: which of them matter, followed side by side as far as they have a list in common.
 
+use super::dilate::near_nodes;
 use super::edge_search::{Edge, End, Next, Part, Search};
-use super::near_nodes::near_nodes;
-use super::solid::Solid;
+use super::region::Solid;
 use crate::band::{LeafId, LeafMask, SignField, bits};
 use crate::candidates::{Candidates, block_in_leaf};
 use crate::distance::Sample;
@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 /// Crossings, with the part of each.
 #[derive(Debug)]
-pub(super) struct SolidCrossings {
+pub(crate) struct SolidCrossings {
     pub crossings: Crossings,
     /// By edge number.
     pub parts: Vec<Part>,
@@ -28,7 +28,7 @@ const TOGETHER: usize = 8;
 
 /// Finds the crossings of edges that change sign: all but those of the lid that are more than some voxels from anything else,
 /// since nothing of the lid gets into the result.
-pub(super) fn crossings(
+pub(crate) fn crossings(
     solid: &Solid<'_>,
     lattice: Lattice,
     signs: &SignField,

@@ -1,6 +1,6 @@
 //! Strips that meet nothing, by exact tests.
 
-use super::ribbon::{Ribbon, Step};
+use super::strip::{Ribbon, Step};
 use crate::geom::box_tree::BoxTree;
 use crate::geom::predicates::projection_axis;
 use crate::geom::triangle_pair::meeting_point;
@@ -16,7 +16,7 @@ const TRIES: usize = 12;
 
 /// A step of a ribbon that does not fit.
 #[derive(Debug)]
-pub(super) struct Conflict {
+pub(crate) struct Conflict {
     /// Rim vertices at it.
     pub rim: Vec<u32>,
     /// The section's triangles that it meets.
@@ -27,7 +27,7 @@ pub(super) struct Conflict {
 }
 
 /// What ribbons must not meet.
-pub(super) struct Around<'a> {
+pub(crate) struct Around<'a> {
     pub mesh: &'a TriMesh,
     pub tree: &'a BoxTree,
     /// The first triangles are those of the patch.
@@ -37,7 +37,7 @@ pub(super) struct Around<'a> {
 }
 
 /// Triangles of strips that were found to meet nothing that is there. They stay so while nothing is added.
-pub(super) type Free = HashSet<[u32; 3]>;
+pub(crate) type Free = HashSet<[u32; 3]>;
 
 impl Around<'_> {
     /// The triangles of ribbons that meet nothing, or where they would.

@@ -1,14 +1,14 @@
 //! The closest point of the boundary curve.
 
-use super::boundary::Boundary;
 use crate::geom::triangle::Feature;
 use crate::mesh::TriMesh;
 use crate::ssvh::Ssvh;
+use crate::thicken::patch::boundary::Boundary;
 use glam::DVec3;
 
 /// The boundary's edges, ready for queries.
 #[derive(Debug)]
-pub(super) struct Curve<'a> {
+pub(crate) struct Curve<'a> {
     mesh: &'a TriMesh,
     boundary: &'a Boundary,
     ssvh: Ssvh,
@@ -20,7 +20,7 @@ pub(super) struct Curve<'a> {
 
 /// A point of the boundary.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct CurvePoint {
+pub(crate) struct CurvePoint {
     /// The loop.
     pub number: u32,
     /// The arc length from the loop's first vertex.

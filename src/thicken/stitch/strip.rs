@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 
 /// A step of the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Step {
+pub(crate) enum Step {
     /// From rung (i, j) to (i + 1, j): the triangle of the boundary's edge i and rim vertex j.
     Boundary(u32, u32),
     /// From rung (i, j) to (i, j + 1): the triangle of the rim's edge j and boundary vertex i.
@@ -25,7 +25,7 @@ pub(super) enum Step {
 
 /// A polygon of a ribbon, its first vertex once more at its end.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Side {
+pub(crate) struct Side {
     /// Vertex numbers.
     pub vertices: Vec<u32>,
     /// Positions.
@@ -36,7 +36,7 @@ pub(super) struct Side {
 
 /// What is to be joined.
 #[derive(Clone, Debug)]
-pub(super) struct Ribbon {
+pub(crate) struct Ribbon {
     /// In the direction of the triangles of S.
     pub boundary: Side,
     /// In the same direction, against that of the section's triangles.

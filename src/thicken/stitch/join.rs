@@ -1,17 +1,18 @@
 //! Joins the boundary of S to the rims of the section.
 
-use super::boundary::Boundary;
-use super::cap::Polygon;
-use super::curve::Curve;
-use super::fit::{Around, Conflict, Free};
-use super::lids;
+use super::boundary_curve::Curve;
 use super::open_mesh::{Change, OpenMesh};
-use super::ribbon::{Ribbon, Side};
 use super::rim::{Match, Reach, RimPlace, matches};
-use super::unsuitable::{Blocked, Obstacle};
+use super::small_rims;
+use super::strip::{Ribbon, Side};
+use super::strip_fitting::{Around, Conflict, Free};
 use crate::geom::box_tree::BoxTree;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};
+use crate::thicken::error::{Blocked, Obstacle};
+use crate::thicken::patch::boundary::Boundary;
+use crate::thicken::patch::intersections;
+use crate::thicken::patch::minimal_triangulation::Polygon;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -103,7 +104,7 @@ fn gaps(
                 has_rim[places[n].number()] = true;
                 continue;
             }
-            Match::Stray if rim.len() <= lids::MOST => {
+            Match::Stray if rim.len() <= small_rims::MOST => {
                 gaps.lids.push(lid(open, rim, first));
                 continue;
             }
@@ -194,7 +195,7 @@ fn ribbon(
 
 /// A closed mesh.
 #[derive(Debug)]
-pub(super) struct Stitched {
+pub(crate) struct Stitched {
     /// The triangles of the patch, of the contour, of what joins them.
     pub mesh: TriMesh,
     /// The lattice edge of each triangle of the contour.
@@ -202,7 +203,7 @@ pub(super) struct Stitched {
 }
 
 /// The patch, the section and the ribbons between them, if they can be joined without intersections.
-pub(super) fn stitch(
+pub(crate) fn stitch(
     patch: &TriMesh,
     boundary: &Boundary,
     mut open: OpenMesh,
@@ -221,7 +222,7 @@ pub(super) fn stitch(
         .collect();
     let tree = BoxTree::new(&mesh.vertices, &mesh.triangles, with_section.into_par_iter());
     // What meets the patch near a rim goes; the ribbon takes its place.
-    let meeting = super::check::meeting_patch(&mesh, &tree, patch_count as u32, run)?;
+    let meeting = intersections::meeting_patch(&mesh, &tree, patch_count as u32, run)?;
     if !meeting.is_empty() {
         open.drop_around(meeting.keys().map(|&t| t as usize - patch_count), 1);
         close_strays(patch, boundary, &mut open, reach, Change::Drop);

@@ -1,15 +1,15 @@
 //! The boundary curve of an open mesh: its loops, and the walls that stand on it.
 
-use super::PatchError;
 use crate::distance::Sample;
 use crate::geom::triangle::{Feature, Side};
 use crate::mesh::{Topology, TriMesh};
+use crate::thicken::PatchError;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// The boundary of an oriented 2-manifold mesh.
 #[derive(Clone, Debug)]
-pub(super) struct Boundary {
+pub(crate) struct Boundary {
     /// Vertex numbers of each loop, in the direction in which the triangles run through its edges.
     pub loops: Vec<Vec<u32>>,
     /// Per vertex whether it is on the boundary.

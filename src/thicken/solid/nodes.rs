@@ -1,7 +1,6 @@
 //! Which nodes are in the solid (\[WC13\] section 3): those of the band around S whose closest triangle says so.
 
-use super::boundary::Boundary;
-use super::solid::{Place, Solid};
+use super::region::{Place, Solid};
 use crate::band::{BandSettings, Below, LeafMask, SignField, build_below};
 use crate::candidates::CandidateLists;
 use crate::distance::SignedDistance;
@@ -10,13 +9,14 @@ use crate::error::Error;
 use crate::lattice::{Ijk, LEAF_SIZE, Lattice};
 use crate::run::{RunSettings, SHARE};
 use crate::slab::Slab;
+use crate::thicken::patch::boundary::Boundary;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::convert::Infallible;
 
 /// The band of all nodes that can be in the solid or next to it.
 #[derive(Debug)]
-pub(super) struct Nodes {
+pub(crate) struct Nodes {
     origins: Vec<Ijk>,
     /// Leaf by leaf 512 closest triangles; -1 beyond the band, and where nobody needs them. In the pieces in which they were made.
     closest: Vec<Vec<i32>>,
@@ -28,7 +28,7 @@ pub(super) struct Nodes {
 
 /// Where nodes are looked for, in model units.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Extent {
+pub(crate) struct Extent {
     /// The distance from the mesh up to which they matter.
     pub reach: f64,
     /// What is clearly more than this over the mesh does not.

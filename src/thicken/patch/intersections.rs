@@ -1,18 +1,18 @@
 //! The exact tests of what was not made by the contour alone.
 
-use super::unsuitable::PatchError;
 use crate::geom::box_tree::BoxTree;
 use crate::geom::predicates::projection_axis;
 use crate::geom::triangle_pair::meeting_point;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};
+use crate::thicken::PatchError;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 /// Checks that the patch, as it will be written, has area everywhere and does not intersect itself.
-pub(super) fn check_patch(patch: &TriMesh, run: &RunSettings) -> Result<Result<(), PatchError>, Cancelled> {
+pub(crate) fn check_patch(patch: &TriMesh, run: &RunSettings) -> Result<Result<(), PatchError>, Cancelled> {
     let is_flat = |t: &usize| projection_axis(patch.corners(*t)).is_none();
     if let Some(t) = (0..patch.triangles.len()).into_par_iter().find_first(is_flat) {
         return Ok(Err(PatchError::Degenerate { triangle: t as u32, at: patch.corners(t)[0] }));
@@ -28,7 +28,7 @@ pub(super) fn check_patch(patch: &TriMesh, run: &RunSettings) -> Result<Result<(
 const FEW: usize = 8;
 
 /// The triangles from number `patch` on that meet one of those before, ascending, each with a point of both.
-pub(super) fn meeting_patch(
+pub(crate) fn meeting_patch(
     mesh: &TriMesh,
     tree: &BoxTree,
     patch: u32,

@@ -5,7 +5,7 @@
 //! 4.2 closes holes in the same way). What is thickened then is the patch with its caps.
 
 use super::boundary::Boundary;
-use super::cap::Polygon;
+use super::minimal_triangulation::Polygon;
 use crate::geom::box_tree::BoxTree;
 use crate::geom::predicates::projection_axis;
 use crate::geom::triangle_pair::meeting_point;
@@ -45,7 +45,7 @@ struct Hole {
 
 /// The holes of a patch.
 #[derive(Debug)]
-pub(super) struct Holes<'a> {
+pub(crate) struct Holes<'a> {
     patch: &'a TriMesh,
     holes: Vec<Hole>,
     /// The hole of each boundary edge.
@@ -54,7 +54,7 @@ pub(super) struct Holes<'a> {
 
 /// A patch with some of its holes closed.
 #[derive(Debug)]
-pub(super) struct Capped {
+pub(crate) struct Capped {
     /// The patch's triangles, then those of the caps.
     pub mesh: TriMesh,
     /// A point of each hole that was closed.

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 /// A mesh without intersections, ready for moves.
 #[derive(Debug)]
-pub(super) struct Embedding<'a> {
+pub(crate) struct Embedding<'a> {
     mesh: &'a mut TriMesh,
     /// Around the triangles as they were at first, and as they are.
     tree: BoxTree,

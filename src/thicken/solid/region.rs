@@ -10,15 +10,15 @@
 //! What is contoured is \[WC13\] Definition 2 without a layer of depth d below S, the lid, so that no face of the
 //! contour comes near S: the ribbon from the boundary of S to the lid's rim closes the solid.
 
-use super::boundary::Boundary;
-use super::rods::Rods;
+use super::vertex_pillars::Rods;
 use crate::candidates::CandidateLists;
 use crate::distance::{Sample, SignedDistance};
+use crate::thicken::patch::boundary::Boundary;
 use glam::DVec3;
 
 /// Where a point is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub(crate) enum Place {
     /// In the solid, below the lid.
     Inside,
     /// Nearer to S than the lid, or on the other side of S.
@@ -31,7 +31,7 @@ pub(super) enum Place {
 
 /// The solid on the negative side of an open or closed mesh.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Solid<'a> {
+pub(crate) struct Solid<'a> {
     pub distance: &'a SignedDistance<'a>,
     pub boundary: &'a Boundary,
     /// Thickness r, in model units.

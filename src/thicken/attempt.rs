@@ -1,17 +1,17 @@
 //! The solid of a surface on one lattice: the row of steps.
 
-use super::boundary::Boundary;
-use super::crossings;
-use super::nodes::{Extent, Nodes};
-use super::open_mesh::OpenMesh;
-use super::rim::Reach;
-use super::rods::Rods;
+use super::error::Blocked;
+use super::finish::shape::{self, Face, Moving, Rounds, Shaped};
+use super::patch::boundary::Boundary;
 use super::settings::Resolved;
-use super::shape::{self, Face, Moving, Rounds, Shaped};
-use super::solid::Solid;
-use super::stitch::{self, Stitched};
-use super::unsuitable::Blocked;
-use super::{ThickenError, ThickenSettings, ThickenTimes, closed, memory};
+use super::solid::crossings;
+use super::solid::nodes::{Extent, Nodes};
+use super::solid::region::Solid;
+use super::solid::vertex_pillars::Rods;
+use super::stitch::join::{self, Stitched};
+use super::stitch::open_mesh::OpenMesh;
+use super::stitch::rim::Reach;
+use super::{ThickenError, ThickenSettings, ThickenTimes, closed_shell, memory_estimate};
 use crate::distance::SignedDistance;
 use crate::error::Error;
 use crate::lattice::Lattice;
@@ -60,7 +60,7 @@ impl Work<'_> {
         if boundary.is_empty() && self.settings.map.is_none() {
             return Ok(());
         }
-        memory::check(patch, boundary, at, self.settings.max_memory)
+        memory_estimate::check(patch, boundary, at, self.settings.max_memory)
     }
 
     /// The solid on one side of `surface`, whose triangles are its first ones.
@@ -84,7 +84,7 @@ impl Work<'_> {
         };
         if boundary.is_empty() && settings.map.is_none() {
             times.hierarchy += started.elapsed().as_secs_f64();
-            return Ok(Ok(closed::shell(surface, at, settings, times, run)?));
+            return Ok(Ok(closed_shell::shell(surface, at, settings, times, run)?));
         }
         let distance = {
             let _phase = run.phase(Phase::Hierarchy, 0);
@@ -121,7 +121,7 @@ impl Work<'_> {
 
         let started = Instant::now();
         let reach = Reach { across: 1.5 * thickness, along: 4.0 * voxel };
-        let stitched = run.install(|| stitch::stitch(surface, boundary, open, reach, run))?;
+        let stitched = run.install(|| join::stitch(surface, boundary, open, reach, run))?;
         times.boundary += started.elapsed().as_secs_f64();
         let Stitched { mut mesh, edges } = match stitched {
             Ok(stitched) => stitched,

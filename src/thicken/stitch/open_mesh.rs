@@ -1,7 +1,5 @@
 //! The contour without the faces below the patch: an open mesh whose rims run along the boundary of S.
 
-use super::crossings::SolidCrossings;
-use super::edge_search::Part;
 use crate::band::SignField;
 use crate::contour::{Precision, contour_by_edge};
 use crate::error::Error;
@@ -9,12 +7,14 @@ use crate::geom::triangle::Side;
 use crate::lattice::Lattice;
 use crate::mesh::{Topology, TriMesh};
 use crate::run::RunSettings;
+use crate::thicken::solid::crossings::SolidCrossings;
+use crate::thicken::solid::edge_search::Part;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What [`OpenMesh::close`] may do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Change {
+pub(crate) enum Change {
     /// Keep triangles, or leave more of them out.
     Both,
     /// Leave more of them out.
@@ -23,7 +23,7 @@ pub(super) enum Change {
 
 /// Section and shell: the triangles of a contour that are kept.
 #[derive(Debug)]
-pub(super) struct OpenMesh {
+pub(crate) struct OpenMesh {
     /// The whole contour.
     pub mesh: TriMesh,
     pub topology: Topology,

@@ -5,14 +5,14 @@
 //! none touches the patch. The normals of the section are those of the walls on the boundary's edges, or, as in the paper,
 //! the faces' own, smoothed in each round.
 
-use super::SectionNormals;
-use super::edge_search::Part;
 use super::embedding::Embedding;
-use super::solid::Solid;
 use crate::contour::Precision;
 use crate::contour::qef::Qef;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings, SHARE};
+use crate::thicken::SectionNormals;
+use crate::thicken::solid::edge_search::Part;
+use crate::thicken::solid::region::Solid;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -32,7 +32,7 @@ const ALIGNED: f64 = 0.866;
 
 /// A face of the contour, and what is known of the solid's boundary there.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Face {
+pub(crate) struct Face {
     pub part: Part,
     /// Where the lattice edge crosses.
     pub point: DVec3,
@@ -42,7 +42,7 @@ pub(super) struct Face {
 
 /// The faces of a solid that may be moved.
 #[derive(Debug)]
-pub(super) struct Moving {
+pub(crate) struct Moving {
     /// The number of the first of them among the mesh's triangles.
     pub first: usize,
     /// One after the other.
@@ -53,14 +53,14 @@ pub(super) struct Moving {
 
 /// How often, and with which normals.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rounds {
+pub(crate) struct Rounds {
     pub most: u32,
     pub normals: SectionNormals,
 }
 
 /// What was done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Shaped {
+pub(crate) struct Shaped {
     /// Rounds after which nothing moved, or all of them.
     pub rounds: u32,
     /// Moves that were made.
@@ -84,7 +84,7 @@ struct Target {
 }
 
 /// At most `rounds` rounds over a solid.
-pub(super) fn process(
+pub(crate) fn process(
     mesh: &mut TriMesh,
     mut moving: Moving,
     solid: &Solid<'_>,

@@ -3,14 +3,14 @@
 //! Where sheets are nearer to each other than a voxel, or the walls of two holes meet, the lattice can leave a hole of a
 //! few triangles between section and shell. It is closed by its minimal-area triangulation (\[WC13\] section 4.2).
 
-use super::cap::Polygon;
-use super::fit::{Around, Conflict};
+use super::strip_fitting::{Around, Conflict};
 use crate::geom::triangle_pair::meeting_point;
 use crate::run::{Cancelled, RunSettings};
+use crate::thicken::patch::minimal_triangulation::Polygon;
 use glam::DVec3;
 
 /// Vertices up to which a rim is closed by a lid. What is larger is no flaw of the lattice, but shape.
-pub(super) const MOST: usize = 24;
+pub(crate) const MOST: usize = 24;
 
 /// Triangulations of a rim are chosen anew this often without the triangles that meet something: each try forbids one at
 /// least.

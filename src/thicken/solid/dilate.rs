@@ -9,7 +9,7 @@ use rayon::prelude::*;
 const STEPS: usize = 3;
 
 /// The nodes at most [`STEPS`] steps along each axis from those of `masks`, leaf by leaf.
-pub(super) fn near_nodes(signs: &SignField, mut masks: Vec<LeafMask>) -> Vec<LeafMask> {
+pub(crate) fn near_nodes(signs: &SignField, mut masks: Vec<LeafMask>) -> Vec<LeafMask> {
     let leaves: Vec<LeafId> = signs.leaves().collect();
     for axis in Axis::ALL {
         for _ in 0..STEPS {

@@ -1,6 +1,6 @@
 //! The way along a lattice edge to where it leaves the solid, through which of its faces, and the normal there.
 
-use super::solid::{Place, Solid};
+use super::region::{Place, Solid};
 use crate::distance::Sample;
 use crate::edge::Crossing;
 use crate::lattice::Axis;
@@ -8,7 +8,7 @@ use glam::DVec3;
 
 /// The part of the solid's boundary that an edge crosses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Part {
+pub(crate) enum Part {
     /// The lid, below S: left out of the result.
     Lid,
     /// The inner shell, at distance r.
@@ -35,14 +35,14 @@ const BESIDE: f64 = 0.3 * SHORTEST;
 
 /// A point of an edge.
 #[derive(Clone, Copy)]
-pub(super) struct End {
+pub(crate) struct End {
     /// From 0 at the edge's lower node to 1.
     pub t: f64,
     pub sample: Sample,
 }
 
 /// A lattice edge.
-pub(super) struct Edge<'a> {
+pub(crate) struct Edge<'a> {
     pub solid: &'a Solid<'a>,
     /// Its lower node.
     pub start: DVec3,
@@ -52,7 +52,7 @@ pub(super) struct Edge<'a> {
 }
 
 /// The way to the crossing between an end inside and one outside.
-pub(super) struct Search<'a> {
+pub(crate) struct Search<'a> {
     pub edge: Edge<'a>,
     /// The nearest place on the way so far that is inside.
     pub inside: End,
@@ -69,7 +69,7 @@ pub(super) struct Search<'a> {
 }
 
 /// What a search needs next.
-pub(super) enum Next {
+pub(crate) enum Next {
     /// The closest point to this place on the edge.
     At(f64),
     Found(Crossing, Part),

@@ -1,6 +1,6 @@
 //! What a thickening takes, before it starts.
 
-use super::boundary::Boundary;
+use super::patch::boundary::Boundary;
 use super::settings::Resolved;
 use crate::mesh::{TriMesh, measure};
 use crate::offset::{MemoryError, available_memory};

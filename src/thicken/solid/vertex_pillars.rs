@@ -1,13 +1,13 @@
 //! Rods below vertices in which parts of the surface touch: without them the parts would hang together by less than a voxel.
 
-use super::boundary::Boundary;
 use crate::mesh::TriMesh;
+use crate::thicken::patch::boundary::Boundary;
 use glam::DVec3;
 use std::collections::HashMap;
 
 /// The rods of a surface, found by place.
 #[derive(Debug)]
-pub(super) struct Rods {
+pub(crate) struct Rods {
     rods: Vec<Rod>,
     /// The rods near each cube, ascending. A cube is as wide as a rod: a larger one would be near to many.
     near: HashMap<[i32; 3], Vec<u32>>,

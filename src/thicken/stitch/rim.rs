@@ -1,15 +1,15 @@
 //! Which boundary loop of S a rim of the section runs around.
 
-use super::boundary::Boundary;
-use super::curve::{Curve, CurvePoint};
+use super::boundary_curve::{Curve, CurvePoint};
 use crate::mesh::TriMesh;
+use crate::thicken::patch::boundary::Boundary;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// How a rim may lie to the boundary.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Reach {
+pub(crate) struct Reach {
     /// A rim's vertex is at most this far from the boundary, in model units: as far as the section reaches.
     pub across: f64,
     /// A rung leads at most this far along the boundary beyond the next vertices.
@@ -17,7 +17,7 @@ pub(super) struct Reach {
 }
 
 /// A rim, seen from the boundary.
-pub(super) struct RimPlace {
+pub(crate) struct RimPlace {
     pub points: Vec<DVec3>,
     /// Per vertex the closest point of one and the same loop.
     pub closest: Vec<CurvePoint>,
@@ -75,7 +75,7 @@ impl RimPlace {
 
 /// What a rim is to the loop near it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Match {
+pub(crate) enum Match {
     /// It runs around it once.
     Around,
     /// So few vertices that nobody can tell, and no other rim is there for the loop.
@@ -90,7 +90,7 @@ pub(super) enum Match {
 const SMALL: usize = 1 << 16;
 
 /// What each rim is.
-pub(super) fn matches(places: &[RimPlace], boundary: &Boundary) -> Vec<Match> {
+pub(crate) fn matches(places: &[RimPlace], boundary: &Boundary) -> Vec<Match> {
     let mut is_taken = vec![false; boundary.loops.len()];
     let mut found = vec![Match::Stray; places.len()];
     for (found, place) in found.iter_mut().zip(places) {
