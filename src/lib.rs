@@ -5,7 +5,6 @@ pub mod geom;
 pub mod run;
 
 pub mod lattice;
-pub mod slab;
 pub mod mesh;
 pub mod io;
 pub mod ssvh;

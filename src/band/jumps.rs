@@ -63,7 +63,7 @@ fn border(origin: Ijk, side: i32) -> impl Iterator<Item = (Ijk, Ijk)> {
 mod tests {
     use super::*;
     use crate::lattice::Lattice;
-    use crate::slab::Slab;
+    use crate::lattice::Slab;
 
     #[test]
     fn only_faces_towards_the_outside_get_leaves() {

@@ -15,9 +15,9 @@
 
 use super::signs::{LeafId, SignField};
 use crate::distance::SignedDistance;
+use crate::lattice::Slab;
 use crate::lattice::{Ijk, Lattice, LeafMask, Z_FIRST, Z_LAST, bits};
 use crate::run::SHARE;
-use crate::slab::Slab;
 use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;

@@ -3,9 +3,9 @@ use crate::candidates::CandidateLists;
 use crate::distance::SignedDistance;
 use crate::filter::{BoxSide, FilterSettings, Switch};
 use crate::geom::aabb::Aabb;
+use crate::lattice::Slab;
 use crate::mesh::{Topology, TriMesh};
 use crate::run::{Cancelled, RunSettings};
-use crate::slab::Slab;
 use glam::DVec3;
 use std::collections::{HashMap, HashSet};
 

@@ -9,8 +9,8 @@ use crate::contour::leaf_vertices::LeafVertices;
 use crate::contour::recover::Wish;
 use crate::contour::surface::Surface;
 use crate::edge::Crossings;
+use crate::lattice::Slab;
 use crate::run::{Cancelled, PhaseGuard, SHARE};
-use crate::slab::Slab;
 use rayon::prelude::*;
 
 /// One in so many vertices has room beside those of the cells.

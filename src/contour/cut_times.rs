@@ -10,8 +10,8 @@ use crate::contour::grid::Grid;
 use crate::contour::polygonize::{Cut, CutMethod, Fit, Polygon, polygonize};
 use crate::contour::{ContourError, ContourSettings, face_vertex, reach};
 use crate::edge::Crossings;
+use crate::lattice::Slab;
 use crate::run::{Phase, RunSettings};
-use crate::slab::Slab;
 use std::time::Instant;
 
 /// The polygons of a few leaves are cut this often by each method, and the shortest time counts: an

@@ -8,8 +8,8 @@ use crate::band::{LeafId, SignField};
 use crate::candidates::CandidateLists;
 use crate::distance::SignedDistance;
 use crate::lattice::Lattice;
+use crate::lattice::Slab;
 use crate::run::{Cancelled, Phase, RunSettings, SHARE};
-use crate::slab::Slab;
 use rayon::prelude::*;
 
 /// What is known of the triangles that are near the edges.

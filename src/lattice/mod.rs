@@ -12,9 +12,11 @@
 
 pub(crate) mod leaf_index;
 mod leaf_mask;
+mod slab;
 
 pub use leaf_index::LeafIndex;
 pub use leaf_mask::{LeafMask, Z_FIRST, Z_LAST, bits};
+pub use slab::Slab;
 
 use std::ops::{Add, Sub};
 

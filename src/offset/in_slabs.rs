@@ -9,9 +9,9 @@ use super::{OffsetResult, OffsetSettings, OffsetStatistics, Prepared};
 use crate::band::{BandSettings, count_layers};
 use crate::contour::{SlabContour, halo};
 use crate::error::Error;
+use crate::lattice::Slab;
 use crate::mesh::TriMesh;
 use crate::run::RunSettings;
-use crate::slab::Slab;
 use crate::unseen::{Suspects, Unseen};
 use std::time::Instant;
 

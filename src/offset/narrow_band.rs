@@ -10,8 +10,8 @@ use crate::edge::{NearTriangles, NodeTriangles, PartTriangles};
 use crate::error::Error;
 use crate::filter::FilterStatistics;
 use crate::lattice::Ijk;
+use crate::lattice::Slab;
 use crate::run::RunSettings;
-use crate::slab::Slab;
 
 /// The band around the offset surface.
 pub(crate) struct NarrowBand {

@@ -4,8 +4,8 @@ use crate::band::BandSettings;
 use crate::contour::{ContourSettings, Precision};
 use crate::geom::aabb::Aabb;
 use crate::lattice::Lattice;
+use crate::lattice::Slab;
 use crate::mesh::{LENGTHS, TriMesh};
-use crate::slab::Slab;
 use glam::DVec3;
 
 /// A length given by a user.

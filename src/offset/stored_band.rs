@@ -4,7 +4,7 @@ use super::OffsetSettings;
 use crate::band::{BandSettings, LEAF_DIM, LEAF_SIZE, LeafBatch};
 use crate::filter::Block;
 use crate::lattice::Ijk;
-use crate::slab::Slab;
+use crate::lattice::Slab;
 use crate::vdb::{Band, ClosestGrid, SurfaceGrid, VdbError};
 
 /// What is stored of a batch of leaves.

@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::edge::{EdgeNumbers, EdgeSettings, NearTriangles, RootMethod, solve, solve_by};
+use crate::lattice::Slab;
 use crate::mesh::{measure, shapes};
 use crate::offset::narrow_band::NarrowBand;
-use crate::slab::Slab;
 use crate::verify::tests::audit::audit;
 use glam::DVec3;
 use std::f64::consts::PI;

@@ -6,7 +6,7 @@ use super::report::{Cell, Report};
 use crate::distance::SignedDistance;
 use crate::edge::{EdgeSettings, EdgeStatistics, RootMethod, solve_by};
 use crate::error::Error;
-use crate::slab::Slab;
+use crate::lattice::Slab;
 use std::time::Instant;
 
 /// Published percentages: S_d = 0, 1, 2, up to 6; bisection up to 6.

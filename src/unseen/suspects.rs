@@ -5,9 +5,9 @@ use crate::band::{LeafId, SignField};
 use crate::candidates::CandidateLists;
 use crate::distance::{Sample, SignedDistance};
 use crate::edge::NearTriangles;
+use crate::lattice::Slab;
 use crate::lattice::{Axis, Ijk, LEAF_DIM, LEAF_SIZE, Lattice};
 use crate::run::{Cancelled, RunSettings, SHARE};
-use crate::slab::Slab;
 use glam::DVec3;
 use rayon::prelude::*;
 

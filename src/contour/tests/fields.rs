@@ -3,9 +3,9 @@
 use crate::band::{Axis, Ijk, LEAF_DIM, LeafMask, SignField};
 use crate::contour::{ContourSettings, ContourStatistics, CutMethod, Lattice, Precision, Surface, contour};
 use crate::edge::{Crossing, Crossings, EdgeNumbers};
+use crate::lattice::Slab;
 use crate::mesh::TriMesh;
 use crate::run::RunSettings;
-use crate::slab::Slab;
 use std::convert::Infallible;
 
 /// A field whose nodes from `low` to `high` are inside by a rule, and whose other nodes are outside.

@@ -47,7 +47,7 @@ fn widened(axis: Axis, before: LeafMask, own: LeafMask, after: LeafMask) -> Leaf
 mod tests {
     use super::*;
     use crate::lattice::Ijk;
-    use crate::slab::Slab;
+    use crate::lattice::Slab;
     use std::convert::Infallible;
 
     #[test]

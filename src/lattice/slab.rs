@@ -13,7 +13,7 @@
 //! halo. Slabs are cut across x, the slowest axis in the order of leaves, so that what a slab owns is one piece of
 //! everything that is kept in this order.
 
-use crate::lattice::{Ijk, LEAF_DIM};
+use super::{Ijk, LEAF_DIM};
 
 /// A part of the lattice between two planes of nodes across the x axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
