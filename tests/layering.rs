@@ -114,7 +114,7 @@ fn sources(directory: &Path) -> Vec<PathBuf> {
 
 #[test]
 fn imports_are_recognised() {
-    let text = "use crate::mesh::TriMesh;\nuse crate::{band::Ijk, run};\n// crate::offset\nlet x = crate::io::load;\n\
+    let text = "use crate::mesh::TriMesh;\nuse crate::{band::build, run};\n// crate::offset\nlet x = crate::io::load;\n\
                 #[cfg(test)]\nmod tests;\n#[cfg(test)]\nmod more {\nuse crate::offset::x;\n}";
     let names: Vec<String> = used_modules(text).into_iter().map(|(_, name)| name).collect();
     assert_eq!(names, ["mesh", "band", "run", "io"]);

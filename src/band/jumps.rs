@@ -62,8 +62,7 @@ fn border(origin: Ijk, side: i32) -> impl Iterator<Item = (Ijk, Ijk)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lattice::Lattice;
-    use crate::lattice::Slab;
+    use crate::lattice::{Lattice, Slab};
 
     #[test]
     fn only_faces_towards_the_outside_get_leaves() {

@@ -1,9 +1,9 @@
 //! A leaf of the band while it is filled.
 
-use super::{LeafBatch, LeafMask, Z_LAST, inside_mask};
+use super::{LeafBatch, inside_mask};
 use crate::candidates::block_in_leaf;
 use crate::filter::Block;
-use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE};
+use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, LeafMask, Z_LAST};
 
 /// What became of a leaf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,8 +1,7 @@
 //! The working form of the band: leaves in plain arrays, as they cross the bridge to OpenVDB.
 
-use super::LeafMask;
 use crate::candidates::BlockLists;
-use crate::lattice::{Ijk, LEAF_SIZE};
+use crate::lattice::{Ijk, LEAF_SIZE, LeafMask};
 
 /// A batch of leaves, structure of arrays: entry n of `values` and `closest` belongs to node n % 512 of
 /// leaf n / 512.

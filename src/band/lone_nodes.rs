@@ -15,8 +15,7 @@
 
 use super::signs::{LeafId, SignField};
 use crate::distance::SignedDistance;
-use crate::lattice::Slab;
-use crate::lattice::{Ijk, Lattice, LeafMask, Z_FIRST, Z_LAST, bits};
+use crate::lattice::{Ijk, Lattice, LeafMask, Slab, Z_FIRST, Z_LAST, bits};
 use crate::run::SHARE;
 use glam::DVec3;
 use rayon::prelude::*;

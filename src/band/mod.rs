@@ -15,7 +15,6 @@ mod signs;
 #[cfg(test)]
 mod tests;
 
-pub use crate::lattice::{Axis, Ijk, LEAF_DIM, LEAF_SIZE, Lattice, LeafMask, Z_FIRST, Z_LAST, bits};
 pub use build::{
     BOXES_PER_BATCH, BandSettings, Below, build, build_below, build_filtered, build_kept, grid_nodes,
 };

@@ -6,9 +6,8 @@
 //! for the sign of a node outside it.
 
 use super::ring::with_ring;
-use crate::lattice::Slab;
 use crate::lattice::leaf_index::NO_LEAF;
-use crate::lattice::{Axis, Ijk, LEAF_DIM, LeafIndex, LeafMask, Z_FIRST, Z_LAST};
+use crate::lattice::{Axis, Ijk, LEAF_DIM, LeafIndex, LeafMask, Slab, Z_FIRST, Z_LAST};
 use rayon::prelude::*;
 
 /// The number of a leaf within its [`SignField`].

@@ -3,7 +3,7 @@ use crate::candidates::CandidateLists;
 use crate::distance::SignedDistance;
 use crate::filter::{BoxSide, FilterSettings, Switch};
 use crate::geom::aabb::Aabb;
-use crate::lattice::Slab;
+use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, Lattice, Slab};
 use crate::mesh::{Topology, TriMesh};
 use crate::run::{Cancelled, RunSettings};
 use glam::DVec3;

@@ -1,6 +1,6 @@
 //! What of a neighbouring leaf is beside a leaf.
 
-use crate::band::{LeafMask, Z_FIRST, Z_LAST};
+use crate::lattice::{LeafMask, Z_FIRST, Z_LAST};
 
 /// Of a neighbour's mask the bits beside a leaf: along each axis the last layer of a neighbour that lies before it (`delta`
 /// -1), the first one of a neighbour that follows it (1), and all of one that does neither (0).
@@ -19,7 +19,7 @@ pub fn beside(mask: &LeafMask, [x, y, z]: [i32; 3]) -> LeafMask {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::band::{Ijk, bits};
+    use crate::lattice::{Ijk, bits};
 
     #[test]
     fn layers_beside_a_leaf_are_those_next_to_its_own() {

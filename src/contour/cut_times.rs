@@ -1,6 +1,6 @@
 //! The time that choosing and making the triangles takes, by method (\[LW11\] Table VI).
 
-use crate::band::{Lattice, SignField};
+use crate::band::SignField;
 use crate::contour::cell::CellNumbers;
 use crate::contour::cells::Cells;
 use crate::contour::edge_polygon::{EdgePolygon, for_polygons};
@@ -10,7 +10,7 @@ use crate::contour::grid::Grid;
 use crate::contour::polygonize::{Cut, CutMethod, Fit, Polygon, polygonize};
 use crate::contour::{ContourError, ContourSettings, face_vertex, reach};
 use crate::edge::Crossings;
-use crate::lattice::Slab;
+use crate::lattice::{Lattice, Slab};
 use crate::run::{Phase, RunSettings};
 use std::time::Instant;
 

@@ -1,6 +1,6 @@
 //! The polygon around each crossed grid edge: the vertices of the four cells around it, and face vertices between them.
 
-use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, bits};
+use crate::band::LeafId;
 use crate::contour::cell::Edge;
 use crate::contour::cells::Cells;
 use crate::contour::envelope::Envelope;
@@ -9,6 +9,7 @@ use crate::contour::feature::Sides;
 use crate::contour::leaf_cells::LeafCells;
 use crate::contour::polygonize::{Fit, Polygon, PolygonCorner};
 use crate::edge::EdgeId;
+use crate::lattice::{Axis, Ijk, LEAF_DIM, bits};
 
 /// The polygon around a crossed edge, and what decides how it is cut.
 #[derive(Clone, Copy, Debug)]

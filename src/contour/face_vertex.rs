@@ -13,7 +13,7 @@
 //!     c ------ n1
 //! ```
 
-use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, SignField, bits};
+use crate::band::{LeafId, SignField};
 use crate::contour::cell::{Case, CellId, CellNumbers, Corner, Edge, Face, Pair, locate};
 use crate::contour::cells::Cells;
 use crate::contour::grid::Grid;
@@ -21,6 +21,7 @@ use crate::contour::vertex::is_missing;
 use crate::contour::{ContourError, TooManyVertices};
 use crate::edge::Crossings;
 use crate::geom::predicates::orient3d;
+use crate::lattice::{Axis, Ijk, LEAF_DIM, bits};
 use crate::run::{Cancelled, RunSettings, SHARE};
 use rayon::prelude::*;
 

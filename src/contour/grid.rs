@@ -1,8 +1,8 @@
 //! The lattice as it is written: node planes and vertices rounded to the output's precision *before*
 //! anything is decided on them. Rounding afterwards would void every decision.
 
-use crate::band::{Ijk, Lattice};
 use crate::contour::ContourError;
+use crate::lattice::{Ijk, Lattice};
 
 /// The coordinates that the contour is decided on, and must be written with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

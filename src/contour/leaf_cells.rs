@@ -1,11 +1,12 @@
 //! The vertices of the cells around the edges of one leaf, in a plain array: each cell is asked for by up to twelve
 //! edges, and finding it among all cells takes longer than what is done with it.
 
-use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, bits};
+use crate::band::LeafId;
 use crate::contour::beside::beside;
 use crate::contour::cell::{CaseTable, CellId, Edge};
 use crate::contour::cells::{CellCase, Cells};
 use crate::contour::face_vertex::FaceVertices;
+use crate::lattice::{Axis, Ijk, LEAF_DIM, bits};
 
 /// Cells along each axis: those of the leaf, and the last ones of the leaf before.
 const SIDE: usize = LEAF_DIM as usize + 1;

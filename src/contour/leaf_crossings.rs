@@ -1,9 +1,10 @@
 //! The crossings of the edges of a leaf's cells, in a plain array: each crossing is asked for by up to four cells.
 
-use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, SignField, bits};
+use crate::band::{LeafId, SignField};
 use crate::contour::beside::beside;
 use crate::contour::cell::Edge;
 use crate::edge::{Crossing, Crossings, EdgeId};
+use crate::lattice::{Axis, Ijk, LEAF_DIM, bits};
 
 /// Nodes along each axis: those of the leaf, and the first ones of the next.
 const SIDE: usize = LEAF_DIM as usize + 1;

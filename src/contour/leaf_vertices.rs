@@ -1,6 +1,6 @@
 //! The vertices of the cells of one leaf.
 
-use crate::band::{Ijk, LeafId, bits};
+use crate::band::LeafId;
 use crate::contour::cell::{Case, CaseTable, CornerSigns, constant_case};
 use crate::contour::cells::{CellCase, Cells};
 use crate::contour::feature::{FeatureVertex, Normals};
@@ -8,6 +8,7 @@ use crate::contour::leaf_crossings::LeafCrossings;
 use crate::contour::recover::Wish;
 use crate::contour::smooth::{Batch, LANES};
 use crate::contour::vertex::{self, Placement, sample};
+use crate::lattice::{Ijk, bits};
 
 /// What is found of a leaf's cells besides the positions of their vertices.
 #[derive(Debug, Default)]

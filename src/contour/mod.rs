@@ -79,10 +79,10 @@ pub use rounds::STRAY;
 pub use statistics::ContourStatistics;
 pub use surface::{Creases, Surface};
 
-use crate::band::{LEAF_DIM, Lattice, SignField};
+use crate::band::SignField;
 use crate::contour::cell::CellNumbers;
 use crate::edge::Crossings;
-use crate::lattice::Slab;
+use crate::lattice::{LEAF_DIM, Lattice, Slab};
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, Phase, RunSettings};
 use cells::{Cells, Placements};

@@ -1,7 +1,6 @@
 //! The vertex of a sheet: as close to the minimiser of its quadratic error function as its cell and its
 //! walls allow.
 
-use crate::band::Ijk;
 use crate::contour::cell::{Case, Edge, EdgeSet};
 use crate::contour::feature::{Asker, Feature, Normals, SPREAD, Samples, feature, nearest};
 use crate::contour::grid::Grid;
@@ -9,6 +8,7 @@ use crate::contour::qef::{Minimiser, Qef, along};
 use crate::contour::region::Region;
 use crate::contour::surface::Surface;
 use crate::edge::Crossing;
+use crate::lattice::Ijk;
 
 /// After rounding, a vertex keeps at least this share of the margin. The margin is 2 units in the last place
 /// or more, and rounding of the vertex and of the cell's walls takes half a unit each.

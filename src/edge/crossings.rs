@@ -4,8 +4,8 @@
 //! whose edge (to the next node along the axis) changes sign, and the numbers follow the order leaf,
 //! axis, node.
 
-use crate::band::{LeafId, LeafMask, SignField, bits};
-use crate::lattice::Axis;
+use crate::band::{LeafId, SignField};
+use crate::lattice::{Axis, LeafMask, bits};
 use crate::run::SHARE;
 use bytemuck::Zeroable;
 use rayon::prelude::*;

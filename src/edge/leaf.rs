@@ -4,9 +4,9 @@ use super::hybrid::{Direction, GridEdge, NodeTriangle, Root, Solver};
 use super::solve::{NearTriangles, RootMethod};
 use super::statistics::EdgeStatistics;
 use super::{Crossing, EdgeNumbers, LeafTriangles, bisection};
-use crate::band::{LeafId, LeafMask, SignField};
+use crate::band::{LeafId, SignField};
 use crate::candidates::CandidateLists;
-use crate::lattice::{Axis, Ijk, Lattice};
+use crate::lattice::{Axis, Ijk, Lattice, LeafMask};
 use glam::DVec3;
 
 /// Edges that start at the nodes of a block.

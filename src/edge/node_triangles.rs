@@ -1,8 +1,8 @@
 //! The closest triangles of the band's nodes. One node of seven is in the band, so only those are kept, found by their ranks
 //! in bit masks.
 
-use crate::band::{LeafId, LeafMask, SignField, bits};
-use crate::lattice::{Ijk, LEAF_SIZE};
+use crate::band::{LeafId, SignField};
+use crate::lattice::{Ijk, LEAF_SIZE, LeafMask, bits};
 
 /// The slot of a leaf of the ring.
 const RING: [u32; 2] = [u32::MAX; 2];

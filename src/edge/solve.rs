@@ -7,8 +7,7 @@ use super::{Crossing, Crossings, EdgeNumbers, NodeTriangles};
 use crate::band::{LeafId, SignField};
 use crate::candidates::CandidateLists;
 use crate::distance::SignedDistance;
-use crate::lattice::Lattice;
-use crate::lattice::Slab;
+use crate::lattice::{Lattice, Slab};
 use crate::run::{Cancelled, Phase, RunSettings, SHARE};
 use rayon::prelude::*;
 

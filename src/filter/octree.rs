@@ -2,8 +2,7 @@
 
 use super::{Block, FilterSettings, FilterStatistics, Switch, bounding_box, signed_distance};
 use crate::distance::SignedDistance;
-use crate::lattice::Lattice;
-use crate::lattice::Slab;
+use crate::lattice::{Lattice, Slab};
 
 /// Rounding allowance of a test, in voxels: nodes are evaluated with an error far below this, and a block
 /// is only ever kept for it in vain.

@@ -1,16 +1,13 @@
 //! The band as the edges and the contour need it, in plain arrays; and into OpenVDB, where it is to be kept.
 
 use super::stored_band::{StoredBand, Wanted};
-use crate::band::{
-    self, BOXES_PER_BATCH, BandSettings, InsideBlocks, LeafBatch, LeafMask, LoneNodes, SignField,
-};
+use crate::band::{self, BOXES_PER_BATCH, BandSettings, InsideBlocks, LeafBatch, LoneNodes, SignField};
 use crate::candidates::{BlockLists, CandidateLists};
 use crate::distance::SignedDistance;
 use crate::edge::{NearTriangles, NodeTriangles, PartTriangles};
 use crate::error::Error;
 use crate::filter::FilterStatistics;
-use crate::lattice::Ijk;
-use crate::lattice::Slab;
+use crate::lattice::{Ijk, LeafMask, Slab};
 use crate::run::RunSettings;
 
 /// The band around the offset surface.

@@ -3,8 +3,7 @@
 use crate::band::BandSettings;
 use crate::contour::{ContourSettings, Precision};
 use crate::geom::aabb::Aabb;
-use crate::lattice::Lattice;
-use crate::lattice::Slab;
+use crate::lattice::{Lattice, Slab};
 use crate::mesh::{LENGTHS, TriMesh};
 use glam::DVec3;
 

@@ -1,7 +1,7 @@
 //! Where the lattice is cut into slabs: by memory, or into equal shares of the surface.
 
-use crate::band::{LEAF_DIM, Layers};
-use crate::lattice::Slab;
+use crate::band::Layers;
+use crate::lattice::{LEAF_DIM, Slab};
 
 /// The layers `start` to `end`, as a slab. The first and the last reach beyond all layers, so that everything
 /// has an owner.

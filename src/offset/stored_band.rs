@@ -1,10 +1,9 @@
 //! The band in OpenVDB, as it grows.
 
 use super::OffsetSettings;
-use crate::band::{BandSettings, LEAF_DIM, LEAF_SIZE, LeafBatch};
+use crate::band::{BandSettings, LeafBatch};
 use crate::filter::Block;
-use crate::lattice::Ijk;
-use crate::lattice::Slab;
+use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, Slab};
 use crate::vdb::{Band, ClosestGrid, SurfaceGrid, VdbError};
 
 /// What is stored of a batch of leaves.

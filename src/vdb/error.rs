@@ -1,6 +1,6 @@
 //! Why something failed with a grid or a `.vdb` file.
 
-use crate::band::Ijk;
+use crate::lattice::Ijk;
 use crate::run::Cancelled;
 use std::path::{Path, PathBuf};
 

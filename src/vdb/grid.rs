@@ -3,7 +3,7 @@
 use super::VdbError;
 use super::bridge::ffi;
 use super::leaves::{check_block, check_lengths, flat, level_set_fault, nodes};
-use crate::band::{Ijk, LEAF_DIM, Lattice, LeafMask};
+use crate::lattice::{Ijk, LEAF_DIM, Lattice, LeafMask};
 use crate::run::RunSettings;
 use cxx::UniquePtr;
 

@@ -3,7 +3,7 @@
 use super::VdbError;
 use super::bridge::ffi;
 use super::file::contents;
-use crate::band::Ijk;
+use crate::lattice::Ijk;
 use std::path::Path;
 
 /// A file's header and grids.

@@ -1,7 +1,7 @@
 //! Checks of leaves and blocks before they cross the bridge.
 
 use super::VdbError;
-use crate::band::{Ijk, LEAF_DIM, LEAF_SIZE, LeafMask};
+use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, LeafMask};
 
 /// Nodes further than this from the origin are refused, so that nothing overflows near the ends of i32.
 const FURTHEST: i32 = 1 << 30;

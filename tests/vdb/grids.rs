@@ -1,7 +1,7 @@
 //! Grids in memory.
 
 use crate::sphere::{Sphere, read_out};
-use exocarp::band::{Ijk, Lattice};
+use exocarp::lattice::{Ijk, Lattice};
 use exocarp::run::{CancelToken, RunSettings};
 use exocarp::vdb::{SurfaceGrid, VdbError, VdbOptions, write};
 

@@ -1,6 +1,6 @@
 //! The narrow band of a sphere, built by hand.
 
-use exocarp::band::{Ijk, LEAF_DIM, LEAF_SIZE, Lattice, LeafMask};
+use exocarp::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, Lattice, LeafMask};
 use exocarp::vdb::{Band, ClosestGrid, SurfaceGrid};
 
 /// A sphere around the world origin.

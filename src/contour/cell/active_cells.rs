@@ -4,8 +4,9 @@
 //! its corners have both signs.
 
 use super::case_table::{CaseId, CaseTable, FaceChoice};
-use crate::band::{LeafId, LeafMask, SignField, Z_FIRST, Z_LAST, bits};
+use crate::band::{LeafId, SignField};
 use crate::contour::{ContourError, TooManyVertices};
+use crate::lattice::{LeafMask, Z_FIRST, Z_LAST, bits};
 use crate::run::{RunSettings, SHARE};
 use rayon::prelude::*;
 

@@ -11,7 +11,7 @@
 //!   +---- x
 //! ```
 
-use crate::band::Axis;
+use crate::lattice::Axis;
 
 /// A corner of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -232,8 +232,11 @@ fn stops_when_cancelled_and_when_too_far() {
     let result = contour(&signs, &crossings, Lattice { voxel: 1.0 }, None, &settings, &cancelled);
     assert!(matches!(result, Err(ContourError::Cancelled(_))));
 
-    let far =
-        super::fields::signs(crate::band::Ijk([3_000_000; 3]), crate::band::Ijk([3_000_001; 3]), |_| true);
+    let far = super::fields::signs(
+        crate::lattice::Ijk([3_000_000; 3]),
+        crate::lattice::Ijk([3_000_001; 3]),
+        |_| true,
+    );
     let crossings = super::fields::crossings(&far, |_, _| crate::edge::Crossing {
         t: 0.5,
         normal: [1.0, 0.0, 0.0],

@@ -1,9 +1,9 @@
 //! The promise does not depend on what the surface answers: surfaces that lie, on random lattices.
 
-use crate::band::Ijk;
 use crate::contour::tests::fields::{Random, run_with};
 use crate::contour::tests::random::{PLACES, is_heavy, lattice};
 use crate::contour::{ContourStatistics, Creases, Surface};
+use crate::lattice::Ijk;
 use crate::verify::tests::audit::audit;
 
 /// Answers that have nothing to do with anything, but are the same for the same question.

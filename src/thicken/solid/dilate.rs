@@ -1,7 +1,7 @@
 //! Nodes of the lattice that are near some others.
 
-use crate::band::{LeafId, LeafMask, SignField, Z_FIRST, Z_LAST};
-use crate::lattice::Axis;
+use crate::band::{LeafId, SignField};
+use crate::lattice::{Axis, LeafMask, Z_FIRST, Z_LAST};
 use rayon::prelude::*;
 
 /// How far nodes are from others along each axis at most. The contour's faces at an edge take all edges of the four cells
@@ -46,8 +46,7 @@ fn widened(axis: Axis, before: LeafMask, own: LeafMask, after: LeafMask) -> Leaf
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lattice::Ijk;
-    use crate::lattice::Slab;
+    use crate::lattice::{Ijk, Slab};
     use std::convert::Infallible;
 
     #[test]

@@ -104,7 +104,7 @@ fn complements_have_the_same_sheets() {
 /// Both cells of a face join it alike: the pairs depend on the signs of the face only.
 #[test]
 fn neighbours_agree_on_their_face() {
-    use crate::band::Axis;
+    use crate::lattice::Axis;
     for axis in Axis::ALL {
         let upper = Face::upper(axis);
         let lower = Face::all().find(|&f| f.axis() == axis && f != upper).unwrap();
