@@ -10,6 +10,7 @@ use ply_rs_bw::ply::{
 use super::super::error::{Fault, Place, Problem};
 use super::super::loaded::NonFinite;
 use super::header::{Header, WANTED};
+use super::skip::Skipped;
 use super::{Body, CORNER_LISTS, Role, Vertex};
 
 /// Reads the body, which is `rest` bytes long.
@@ -100,15 +101,6 @@ fn shortest(element: &ElementDef) -> u64 {
         PropertyType::List(count, _) => size(count),
     });
     sizes.sum()
-}
-
-/// An element that is of no interest.
-pub(super) struct Skipped;
-
-impl PropertyAccess for Skipped {
-    fn new() -> Self {
-        Skipped
-    }
 }
 
 impl Vertex {

@@ -18,7 +18,7 @@ use super::super::Format;
 use super::super::error::{Fault, Place, Problem, quote};
 use super::super::loaded::Passed;
 use super::super::text::{BYTE_ORDER_MARK, Ended, read_line};
-use super::binary::Skipped;
+use super::skip::Skipped;
 use super::{CORNER_LISTS, Role};
 
 /// The names of the coordinates of a vertex.

@@ -8,6 +8,7 @@
 mod ascii;
 mod binary;
 mod header;
+mod skip;
 
 use std::io::{BufReader, Read, Seek, Write};
 
