@@ -1,7 +1,7 @@
 //! The intersected edges of one leaf, block by block: edges that start in a block of 2^3 nodes share its list.
 
 use super::hybrid::{Direction, GridEdge, NodeTriangle, Root, Solver};
-use super::solve::{NearTriangles, RootMethod};
+use super::settings::{NearTriangles, RootMethod};
 use super::statistics::EdgeStatistics;
 use super::{Crossing, EdgeNumbers, LeafTriangles, bisection};
 use crate::band::{LeafId, SignField};

@@ -10,11 +10,13 @@ mod hybrid;
 mod leaf;
 mod node_triangles;
 mod regions;
+mod settings;
 mod shared;
 mod solve;
 mod statistics;
 
 pub use crossings::{Crossing, Crossings, EdgeId, EdgeNumbers, TooManyEdges};
 pub use node_triangles::{LeafTriangles, NodeTriangles, PartTriangles};
-pub use solve::{EdgeSettings, NearTriangles, RootMethod, solve, solve_by};
+pub use settings::{EdgeSettings, NearTriangles, RootMethod};
+pub use solve::{solve, solve_by};
 pub use statistics::EdgeStatistics;

@@ -1,0 +1,49 @@
+//! Which surface the edges are intersected with, and by which method.
+
+use super::NodeTriangles;
+use super::hybrid::TOLERANCE;
+use crate::candidates::CandidateLists;
+use crate::lattice::{Lattice, Slab};
+
+/// What is known of the triangles that are near the edges.
+#[derive(Clone, Debug, Default)]
+pub struct NearTriangles {
+    /// The closest triangles of the band's nodes.
+    pub nodes: NodeTriangles,
+    /// All triangles that can be closest to the points of an edge; without, the hierarchy is asked.
+    pub lists: Option<CandidateLists>,
+}
+
+/// How the intersection of an edge is found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum RootMethod {
+    /// In closed form on the triangle that is closest where the last one had its root.
+    #[default]
+    Following,
+    /// The method of \[LW11\]: in closed form where both ends share a triangle, with halving between attempts.
+    Hybrid,
+    /// By halving only, until abs(phi) is at most `tolerance` voxels: the measure that Table V of \[LW11\]
+    /// holds against the hybrid method.
+    Bisection {
+        /// In voxels, positive.
+        tolerance: f64,
+    },
+}
+
+impl RootMethod {
+    /// Bisection to the tolerance of the hybrid method.
+    pub const PLAIN_BISECTION: RootMethod = RootMethod::Bisection { tolerance: TOLERANCE };
+}
+
+/// Which surface to intersect with, on which lattice, and how.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgeSettings {
+    /// The lattice.
+    pub lattice: Lattice,
+    /// The offset distance r in model units.
+    pub r: f64,
+    /// The way to the roots.
+    pub method: RootMethod,
+    /// The part of the lattice whose edges are counted; all are intersected.
+    pub slab: Slab,
+}
