@@ -1,5 +1,5 @@
-//! Offsets a generated model outward and inward and saves the results: `cargo run --release --example
-//! offset_model`.
+//! Offsets a generated model outward and inward and saves the results: `cargo run --release
+//! --example offset_model`.
 
 use exocarp::mesh::{measure, shapes};
 use exocarp::offset::{Length, OffsetSettings, VoxelSize, offset};

@@ -1,4 +1,5 @@
-//! Watches an offset and stops it after a while: `cargo run --release --example progress_and_cancel`.
+//! Watches an offset and stops it after a while: `cargo run --release --example
+//! progress_and_cancel`.
 
 use exocarp::error::Error;
 use exocarp::mesh::shapes;

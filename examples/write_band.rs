@@ -1,5 +1,5 @@
-//! Writes the narrow band of an offset as a level set for any OpenVDB program: `cargo run --release --example
-//! write_band`.
+//! Writes the narrow band of an offset as a level set for any OpenVDB program: `cargo run --release
+//! --example write_band`.
 
 use exocarp::mesh::shapes;
 use exocarp::offset::{Length, OffsetSettings, VoxelSize, offset_band};

@@ -48,7 +48,8 @@ fn methods_are_compared_in_a_table_and_in_json() {
         assert!(number(k, "/median/peak_memory") > number(k, "/median/memory_before"));
         assert!(number(k, "/median/active_voxels") > 1000.0);
     }
-    // What the comparison is for: the crossing-free sharp surface is nearer to the truth than the peers'.
+    // What the comparison is for: the crossing-free sharp surface is nearer to the truth than the
+    // peers'.
     let mean = |k| number(k, "/quality/distance/surface/mean/voxels");
     assert!(mean(0) < mean(1) && mean(1) < mean(2), "{} {} {}", mean(0), mean(1), mean(2));
     assert_eq!(number(0, "/quality/intersections/pairs"), 0.0);
@@ -83,8 +84,8 @@ fn wrong_use_is_one_sentence() {
     exocarp(&["compare", &open, "-d", "1%"]).fails_with(3);
 }
 
-/// What the browser says about each figure: drawn, if every picture in it was decoded and every drawing has
-/// an extent.
+/// What the browser says about each figure: drawn, if every picture in it was decoded and every
+/// drawing has an extent.
 const PROBE: &str = r#"<script>
 addEventListener('load', () => {
   for (const figure of document.querySelectorAll('figure')) {

@@ -43,8 +43,8 @@ fn what_was_passed_over_in_a_file_is_said() {
     assert!((volume(&path) - 8.0).abs() < 1e-6);
 }
 
-/// A cube of side 2 with a vertex in the middle of an edge that only one side of it has; the triangle between
-/// is flat.
+/// A cube of side 2 with a vertex in the middle of an edge that only one side of it has; the
+/// triangle between is flat.
 #[test]
 fn a_closed_mesh_with_a_flat_triangle_is_offset() {
     let dir = tempfile::tempdir().unwrap();

@@ -35,8 +35,8 @@ fn singles(path: &Path) -> Vec<f32> {
     let text = std::fs::read_to_string(path).unwrap();
     let vertices: Vec<&str> = match path.extension().unwrap().to_str().unwrap() {
         "obj" => text.lines().filter_map(|line| line.strip_prefix("v ")).collect(),
-        // The keyword, the counts, and then vertices up to the first face, which begins with the number of
-        // its corners.
+        // The keyword, the counts, and then vertices up to the first face, which begins with the
+        // number of its corners.
         _ => text.lines().skip(2).take_while(|line| line.split(' ').count() == 3).collect(),
     };
     vertices.iter().flat_map(|line| line.split(' ')).map(|word| word.parse().unwrap()).collect()

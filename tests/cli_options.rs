@@ -1,5 +1,6 @@
-//! Every option with values that no one should give: each run ends by itself, with an exit code that says
-//! why, and never with that of an internal error. With `EXOCARP_HEAVY=1` many more values.
+//! Every option with values that no one should give: each run ends by itself, with an exit code
+//! that says why, and never with that of an internal error. With `EXOCARP_HEAVY=1` many more
+//! values.
 
 mod common;
 
@@ -149,7 +150,8 @@ const SINGLE: [&[&str]; 35] = [
 /// A directory with inputs, where outputs of any name may be left.
 struct Bench(tempfile::TempDir);
 
-/// Longer than any of these runs takes, on a busy machine too: what is stopped then would not have ended.
+/// Longer than any of these runs takes, on a busy machine too: what is stopped then would not have
+/// ended.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 impl Bench {

@@ -1,4 +1,5 @@
-//! The program in pieces: streamed, in tiles that are merged, the band alone. All must give the bytes of the whole.
+//! The program in pieces: streamed, in tiles that are merged, the band alone. All must give the
+//! bytes of the whole.
 
 mod common;
 
@@ -157,7 +158,8 @@ fn merged_bands_are_the_whole_band() {
 fn tiles_of_an_inside_out_model_are_the_whole() {
     let mut cube = shapes::cube(1);
     cube.triangles.iter_mut().for_each(|t| t.swap(1, 2));
-    // At a distance of some voxels, and where nothing is left of the hollow but the end of the lattice.
+    // At a distance of some voxels, and where nothing is left of the hollow but the end of the
+    // lattice.
     for distance in ["-3%", "150%"] {
         let bench = Bench::of(&cube, distance, "24");
         let (mesh, band) = (bench.text("whole.ply"), bench.text("whole.vdb"));

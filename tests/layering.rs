@@ -1,8 +1,8 @@
 //! The rooms' order: `src/lib.rs` lists the modules so that each imports only from those above it.
 //!
-//! `error`, `run` and `geom` lie under all. One arrow runs back by intention: `error` names the error of
-//! every stage. Tests beside the code may import from anywhere; the program in `src/cli` uses the public API
-//! only.
+//! `error`, `run` and `geom` lie under all. One arrow runs back by intention: `error` names the
+//! error of every stage. Tests beside the code may import from anywhere; the program in `src/cli`
+//! uses the public API only.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -61,7 +61,8 @@ fn modules() -> Vec<String> {
     order
 }
 
-/// The top-level module that a file belongs to; none for lib.rs, the program, the tests, and `error`.
+/// The top-level module that a file belongs to; none for lib.rs, the program, the tests, and
+/// `error`.
 fn room(path: &Path) -> Option<String> {
     let inside = path.strip_prefix("src").unwrap();
     let parts: Vec<&str> = inside.iter().map(|p| p.to_str().unwrap()).collect();

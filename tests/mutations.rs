@@ -1,9 +1,9 @@
-//! Broken files of every format: never a panic, never an abort, and no more memory than the file's size
-//! justifies.
+//! Broken files of every format: never a panic, never an abort, and no more memory than the file's
+//! size justifies.
 //!
-//! Small valid files are changed at random, with a fixed seed: bits turned, parts cut off, inserted, doubled,
-//! numbers replaced by what no program expects. 300 changes for each kind of file, 3,000 with
-//! `EXOCARP_HEAVY=1`.
+//! Small valid files are changed at random, with a fixed seed: bits turned, parts cut off,
+//! inserted, doubled, numbers replaced by what no program expects. 300 changes for each kind of
+//! file, 3,000 with `EXOCARP_HEAVY=1`.
 
 mod common;
 
@@ -260,7 +260,8 @@ fn mutated_meshes_are_read_or_refused() {
 
 /// Files of OpenVDB go through the program: a crash of the library would end the test.
 fn mutated_bands_are_refused(directory: &Path) {
-    /// Where a file's hash stands, which tells that it was changed. Without, a file is taken on trust.
+    /// Where a file's hash stands, which tells that it was changed. Without, a file is taken on
+    /// trust.
     const HASH: std::ops::Range<usize> = 21..57;
     /// A process each: a tenth of them is enough.
     const SHARE: u64 = 10;

@@ -1,5 +1,5 @@
-//! Offsets of random small meshes at random settings: each ends soon, sound or with a reason. With `EXOCARP_HEAVY=1` two
-//! thousand of them.
+//! Offsets of random small meshes at random settings: each ends soon, sound or with a reason. With
+//! `EXOCARP_HEAVY=1` two thousand of them.
 
 mod common;
 
@@ -11,7 +11,8 @@ use exocarp::verify::soundness;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// What a run may take: seconds of CPU, and bytes of address space, of which it uses less than half.
+/// What a run may take: seconds of CPU, and bytes of address space, of which it uses less than
+/// half.
 const CPU_SECONDS: u32 = 5;
 const ADDRESS_SPACE_KIB: u32 = 1_000_000;
 

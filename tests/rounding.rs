@@ -1,5 +1,5 @@
-//! The promise holds on the coordinates in the file: meshes are written, read again and judged, for models of all sizes
-//! and far from the origin.
+//! The promise holds on the coordinates in the file: meshes are written, read again and judged, for
+//! models of all sizes and far from the origin.
 
 use exocarp::contour::ContourError;
 use exocarp::error::Error;

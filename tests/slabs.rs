@@ -151,8 +151,8 @@ fn tiles_one_after_the_other_give_the_whole() {
     }
 }
 
-/// The same surface with its outside inside: everything far away is solid, and the result ends where the
-/// lattice does.
+/// The same surface with its outside inside: everything far away is solid, and the result ends
+/// where the lattice does.
 fn inside_out(mut mesh: TriMesh) -> TriMesh {
     mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
     mesh
@@ -166,8 +166,8 @@ fn inside_out_models_in_slabs_and_tiles_give_the_whole() {
         ("sphere", inside_out(rotated(shapes::sphere(6)))),
         ("linked_tori", inside_out(stretched(rotated(shapes::linked_tori(8))))),
     ] {
-        // The last distances are larger than the hollow is deep: no surface is left but the end of the
-        // lattice.
+        // The last distances are larger than the hollow is deep: no surface is left but the end of
+        // the lattice.
         for (distance, voxel) in [(0.0, 0.2), (-0.3, 0.11), (2.5, 0.4), (9.0, 0.9)] {
             let settings = OffsetSettings {
                 sign: SignMode::Pseudonormal,

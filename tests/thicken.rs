@@ -77,8 +77,9 @@ fn a_square_becomes_a_plate_of_its_thickness() {
     }
 }
 
-/// Volume of what lies within r of a convex dome on its outer side (or on its inner side) with the closest point off the
-/// boundary, by Steiner's formula for polyhedra: area, edges with their outer angles, vertices with their angle defects.
+/// Volume of what lies within r of a convex dome on its outer side (or on its inner side) with the
+/// closest point off the boundary, by Steiner's formula for polyhedra: area, edges with their outer
+/// angles, vertices with their angle defects.
 fn steiner(dome: &TriMesh, r: f64, side: Side) -> f64 {
     let topology = Topology::new(dome);
     let corner = |v: u32| glam::DVec3::from(dome.vertices[v as usize]);
@@ -188,7 +189,8 @@ fn parts_that_touch_in_a_vertex_hang_together() {
     }
 }
 
-/// A square of side 2 with holes of the shape of triangles and squares: some by themselves, some touch in a vertex.
+/// A square of side 2 with holes of the shape of triangles and squares: some by themselves, some
+/// touch in a vertex.
 fn sieve() -> TriMesh {
     let mut sieve = square(12);
     let is_hole = |t: &usize| {

@@ -1,5 +1,5 @@
-//! Small random patches at thicknesses from next to nothing to a thousand times their size: sound solids, or
-//! refused.
+//! Small random patches at thicknesses from next to nothing to a thousand times their size: sound
+//! solids, or refused.
 //!
 //! `EXOCARP_HEAVY=1` makes 500 of them.
 
@@ -16,8 +16,8 @@ use exocarp::thicken::{Side, ThickenSettings, thicken};
 /// A case takes at most about this much: a second of work.
 const MEMORY: u64 = 100 << 20;
 
-/// A height field over up to 8 x 8 squares, flat to rugged, of any size and anywhere; some with holes and
-/// touching corners, some of two sheets.
+/// A height field over up to 8 x 8 squares, flat to rugged, of any size and anywhere; some with
+/// holes and touching corners, some of two sheets.
 fn patch(random: &mut Random) -> TriMesh {
     let (n, m) = (1 + random.next() as u32 % 8, 1 + random.next() as u32 % 8);
     let (rough, jitter) = (random.of(&[0.0, 0.01, 0.1, 0.3, 1.0]), random.of(&[0.0, 0.0, 0.2]));

@@ -1,5 +1,5 @@
-//! Thickened patches of the models directory: `EXOCARP_MODELS`, or `../shared/models` beside the crate.
-//! With `EXOCARP_HEAVY=1` both sides, two thicknesses and two resolutions of all.
+//! Thickened patches of the models directory: `EXOCARP_MODELS`, or `../shared/models` beside the
+//! crate. With `EXOCARP_HEAVY=1` both sides, two thicknesses and two resolutions of all.
 
 mod common;
 

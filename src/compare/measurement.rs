@@ -13,8 +13,8 @@ pub struct Measurement {
     /// Seconds by phase, in the order in which they ran; what they leave of `engine` has no name.
     #[serde(default)]
     pub phases: Vec<PhaseTime>,
-    /// The most memory that the process had resident when the surface was complete, in bytes; `None` where
-    /// the system does not tell.
+    /// The most memory that the process had resident when the surface was complete, in bytes;
+    /// `None` where the system does not tell.
     pub peak_memory: Option<u64>,
     /// The same just before the method began: program, libraries, input.
     pub memory_before: Option<u64>,
@@ -41,8 +41,8 @@ impl PhaseTime {
 }
 
 impl Measurement {
-    /// The measurement in what a process wrote to its standard output: the last line that is one. Libraries
-    /// may have written there before.
+    /// The measurement in what a process wrote to its standard output: the last line that is one.
+    /// Libraries may have written there before.
     pub fn from_output(text: &str) -> Option<Measurement> {
         text.lines().rev().find_map(|line| serde_json::from_str(line.trim()).ok())
     }
@@ -55,7 +55,8 @@ impl Measurement {
         serde_json::to_string(self)
     }
 
-    /// The measurement with the median of each number; `None` without runs. Counts are those of the last run.
+    /// The measurement with the median of each number; `None` without runs. Counts are those of the
+    /// last run.
     pub fn median(runs: &[Measurement]) -> Option<Measurement> {
         let last = runs.last()?;
         let memory = |of: fn(&Measurement) -> Option<u64>| {

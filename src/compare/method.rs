@@ -84,8 +84,8 @@ impl Method {
         }
     }
 
-    /// The colour in charts and pictures, as #rrggbb: the palette of Okabe and Ito, which people with any
-    /// kind of colour vision can tell apart, and which keeps its contrast in print.
+    /// The colour in charts and pictures, as #rrggbb: the palette of Okabe and Ito, which people
+    /// with any kind of colour vision can tell apart, and which keeps its contrast in print.
     pub fn colour(self) -> &'static str {
         match self {
             Method::Exocarp => "#0072b2",

@@ -1,19 +1,21 @@
-//! The same offset, on the same lattice, with this library and with what else there is: OpenVDB and MeshLib.
+//! The same offset, on the same lattice, with this library and with what else there is: OpenVDB and
+//! MeshLib.
 //!
 //! ```text
 //!  INPUT -> clean -> a process per run and method -> PLY and a line of JSON -> medians
 //!                                                 -> verify                 -> table, report
 //! ```
 //!
-//! Every method gets the same cleaned mesh, the same distance, the same voxel size and the same number of
-//! threads. Each run has a process of its own, so that its memory is its own; the methods take turns, so that
-//! a slow minute of the machine hits all of them; times are medians. `engine` is wall time from the mesh in
-//! memory to the offset surface in memory: reading and writing files is not compared, nor is starting up.
+//! Every method gets the same cleaned mesh, the same distance, the same voxel size and the same
+//! number of threads. Each run has a process of its own, so that its memory is its own; the methods
+//! take turns, so that a slow minute of the machine hits all of them; times are medians. `engine`
+//! is wall time from the mesh in memory to the offset surface in memory: reading and writing files
+//! is not compared, nor is starting up.
 //!
-//! Promised: a method that crashes, fails or runs out of time is said to have done so, and the others go on;
-//! all outputs are judged by the same [`verify`](crate::verify), which knows nothing of who made them. Not
-//! promised: that the peers' memory is all theirs; a Python interpreter is in MeshLib's. What a process held
-//! before the method began is measured, too.
+//! Promised: a method that crashes, fails or runs out of time is said to have done so, and the
+//! others go on; all outputs are judged by the same [`verify`](crate::verify), which knows nothing
+//! of who made them. Not promised: that the peers' memory is all theirs; a Python interpreter is in
+//! MeshLib's. What a process held before the method began is measured, too.
 
 mod machine;
 mod measurement;
@@ -53,8 +55,8 @@ pub struct CompareSettings {
     pub runs: u32,
     /// The time that a run may take.
     pub limit: Duration,
-    /// A method whose first run took longer than this is not run again: the scatter of long runs is small beside
-    /// what tells the methods apart.
+    /// A method whose first run took longer than this is not run again: the scatter of long runs is
+    /// small beside what tells the methods apart.
     pub once_above: Duration,
 }
 

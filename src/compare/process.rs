@@ -13,7 +13,8 @@ use std::time::{Duration, Instant};
 /// How processes are started.
 #[derive(Clone, Debug)]
 pub struct Programs {
-    /// A program that does a [`Job`] with [`work`](super::work) when called with [`worker_arguments`].
+    /// A program that does a [`Job`] with [`work`](super::work) when called with
+    /// [`worker_arguments`].
     pub worker: PathBuf,
     /// The Python interpreter for MeshLib's methods.
     pub python: PathBuf,
@@ -214,8 +215,8 @@ mod tests {
     use super::*;
     use crate::run::CancelToken;
 
-    /// A script, written by a process of its own: a file that this one holds open for writing while another
-    /// test starts a process could not be executed.
+    /// A script, written by a process of its own: a file that this one holds open for writing while
+    /// another test starts a process could not be executed.
     fn script(directory: &Path, text: &str) -> PathBuf {
         let path = directory.join("peer.sh");
         let write = r#"printf '#!/bin/sh\n%s\n' "$1" > "$2" && chmod +x "$2""#;

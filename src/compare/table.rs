@@ -30,7 +30,8 @@ enum Best {
 pub struct Row<'a> {
     /// The method and all that is known of it.
     pub result: &'a MethodResult,
-    /// The text of each column, and whether it is the best of its column; empty when there is no measurement.
+    /// The text of each column, and whether it is the best of its column; empty when there is no
+    /// measurement.
     pub cells: Vec<(String, bool)>,
 }
 

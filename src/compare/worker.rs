@@ -26,15 +26,16 @@ pub struct Job {
     pub output: PathBuf,
 }
 
-/// Width in voxels of the narrow band that OpenVDB's level-set tools want on each side of the surface, and
-/// of what a wide band has beyond the distance.
+/// Width in voxels of the narrow band that OpenVDB's level-set tools want on each side of the
+/// surface, and of what a wide band has beyond the distance.
 const HALF_WIDTH: f64 = 3.0;
 
-/// Runs a method of this program or of OpenVDB in this process: loads the mesh, measures, writes the surface.
+/// Runs a method of this program or of OpenVDB in this process: loads the mesh, measures, writes
+/// the surface.
 ///
 /// # Errors
-/// Whatever fails; [`CompareError::NotHere`](super::CompareError::NotHere) for MeshLib's methods, which
-/// run in Python.
+/// Whatever fails; [`CompareError::NotHere`](super::CompareError::NotHere) for MeshLib's methods,
+/// which run in Python.
 pub fn work(job: &Job, run: &RunSettings) -> Result<Measurement, Error> {
     if job.method.needs() != Needs::Nothing {
         return Err(super::CompareError::NotHere(job.method).into());

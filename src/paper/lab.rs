@@ -46,9 +46,10 @@ impl Lab<'_> {
         }
     }
 
-    /// The voxel size of a grid of `resolution` cells that is fitted to the model and its offset by `largest`, for
-    /// tables whose rows share a grid: in the paper the intersected edges of the warrior grow from 85,032 at
-    /// 0.02 to 463,838 at 0.32, and on a grid fitted to each offset they would hardly change.
+    /// The voxel size of a grid of `resolution` cells that is fitted to the model and its offset by
+    /// `largest`, for tables whose rows share a grid: in the paper the intersected edges of the
+    /// warrior grow from 85,032 at 0.02 to 463,838 at 0.32, and on a grid fitted to each offset
+    /// they would hardly change.
     pub fn shared_grid(&self, model: &Model, largest: f64, resolution: u32) -> Result<VoxelSize, Error> {
         let fitted = self.offset_settings(model, largest, VoxelSize::Resolution(resolution));
         Ok(VoxelSize::Units(fitted.resolve(&model.mesh)?.lattice.voxel))

@@ -1,5 +1,6 @@
-//! The tables of \[LW11\] (Liu and Wang, *Fast intersection-free offset surface generation from freeform models
-//! with triangular meshes*, IEEE T-ASE 8(2), 2011), measured here and printed beside the published figures.
+//! The tables of \[LW11\] (Liu and Wang, *Fast intersection-free offset surface generation from
+//! freeform models with triangular meshes*, IEEE T-ASE 8(2), 2011), measured here and printed
+//! beside the published figures.
 //!
 //! | table | file | what |
 //! |---|---|---|
@@ -11,8 +12,8 @@
 //! | VI | `table6` | convex/concave analysis against polygon-edge intersections |
 //! | VII | `table7` | errors of the result |
 //!
-//! Most of the paper's models are not public. `models` says which model stands for which; a reader of a table
-//! must hold figures against each other in kind, not in digits.
+//! Most of the paper's models are not public. `models` says which model stands for which; a reader
+//! of a table must hold figures against each other in kind, not in digits.
 
 mod lab;
 mod models;
@@ -97,7 +98,8 @@ impl Table {
 pub struct PaperSettings {
     /// Cells along the longest side where the paper has 512.
     pub resolution: u32,
-    /// Mesh files to take models from, by name; generated models stand in for what is not among them.
+    /// Mesh files to take models from, by name; generated models stand in for what is not among
+    /// them.
     pub files: Vec<PathBuf>,
     /// As in [`OffsetSettings`](crate::offset::OffsetSettings).
     pub max_memory: Option<u64>,
@@ -112,8 +114,8 @@ impl Default for PaperSettings {
 /// Measures one table.
 ///
 /// # Errors
-/// A file that cannot be read, or what [`offset`](crate::offset::offset) fails with. An offset that is empty is
-/// a row that says so.
+/// A file that cannot be read, or what [`offset`](crate::offset::offset) fails with. An offset that
+/// is empty is a row that says so.
 pub fn measure(table: Table, settings: &PaperSettings, run: &RunSettings) -> Result<Report, Error> {
     let lab = Lab { settings, run };
     let mut report = match table {

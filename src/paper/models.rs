@@ -1,7 +1,8 @@
 //! The paper's models, and what stands for them here.
 //!
-//! Only the rocker arm is the same model; the dragon is another scan of a dragon, the anchor another plate of
-//! the kind. The others stand for their kind: a sharp machine part, a statue, a thing with many holes.
+//! Only the rocker arm is the same model; the dragon is another scan of a dragon, the anchor
+//! another plate of the kind. The others stand for their kind: a sharp machine part, a statue, a
+//! thing with many holes.
 
 use crate::error::Error;
 use crate::io;
@@ -32,7 +33,8 @@ struct StandIn {
     name: &'static str,
     /// Names of files without extension, the first that is there.
     files: &'static [&'static str],
-    /// The generated model otherwise, and its detail: about the paper's number of triangles up to 50,000.
+    /// The generated model otherwise, and its detail: about the paper's number of triangles up to
+    /// 50,000.
     shape: (&'static str, u32),
 }
 
@@ -86,8 +88,8 @@ pub(super) struct Model {
 }
 
 impl Model {
-    /// Loads or generates what stands for `of`. `cuts` divides each side of each triangle, which keeps the
-    /// surface and gives `cuts`^2 times the triangles.
+    /// Loads or generates what stands for `of`. `cuts` divides each side of each triangle, which
+    /// keeps the surface and gives `cuts`^2 times the triangles.
     ///
     /// # Errors
     /// A file that cannot be read.
@@ -130,7 +132,8 @@ fn refined(mesh: &TriMesh, cuts: u32) -> TriMesh {
     let n = f64::from(cuts);
     for (t, numbers) in mesh.triangles.iter().enumerate() {
         let corners = mesh.corners(t);
-        // Points are summed in the order of the vertex numbers, so that both sides of an edge get the same bits.
+        // Points are summed in the order of the vertex numbers, so that both sides of an edge get
+        // the same bits.
         let mut order = [0, 1, 2];
         order.sort_unstable_by_key(|&i| numbers[i]);
         let point = |weights: [u32; 3]| -> [f64; 3] {

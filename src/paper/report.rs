@@ -110,8 +110,8 @@ impl Report {
         text
     }
 
-    /// The table as an object: `table`, `title`, `rows` (an object each, by column), `notes`. Times are in
-    /// seconds, parts from 0 to 1, published counts rounded to thousands as in the paper.
+    /// The table as an object: `table`, `title`, `rows` (an object each, by column), `notes`. Times
+    /// are in seconds, parts from 0 to 1, published counts rounded to thousands as in the paper.
     pub fn json(&self) -> Value {
         let row = |row: &Vec<Cell>| -> Value {
             let pairs = self.columns.iter().zip(row);

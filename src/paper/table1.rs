@@ -5,11 +5,12 @@ use super::models::PaperModel;
 use super::report::{Cell, Report};
 use crate::error::Error;
 
-/// A published row: offset, then T_s, T_d, T_c, T_tot in seconds; `None` where the table has no entry.
+/// A published row: offset, then T_s, T_d, T_c, T_tot in seconds; `None` where the table has no
+/// entry.
 type Row = (f64, [Option<f64>; 4]);
 
-/// \[LW11\] Table I. T_s stands once per model. The rabbit's T_s is T_tot less the other two. T_tot of the
-/// anchor plate at -0.041 is less than the sum of its parts, in the paper as well.
+/// \[LW11\] Table I. T_s stands once per model. The rabbit's T_s is T_tot less the other two. T_tot
+/// of the anchor plate at -0.041 is less than the sum of its parts, in the paper as well.
 const PUBLISHED: [(PaperModel, &str, &[Row]); 6] = [
     (
         PaperModel::CarveCube,

@@ -9,8 +9,8 @@ use crate::offset::VoxelSize;
 /// The offset of the table, as a part of the diagonal.
 const OFFSET: f64 = 0.02;
 
-/// \[LW11\] Table II: triangles, by how much the sides of the stand-in's triangles are divided to be in the same
-/// ratio (9 for 10), and seconds on grids of 65^3, 129^3, 257^3, 513^3 nodes.
+/// \[LW11\] Table II: triangles, by how much the sides of the stand-in's triangles are divided to
+/// be in the same ratio (9 for 10), and seconds on grids of 65^3, 129^3, 257^3, 513^3 nodes.
 const PUBLISHED: [(&str, u32, [f64; 4]); 2] =
     [("40k", 1, [0.53, 0.98, 3.34, 21.6]), ("400k", 3, [4.6, 5.3, 8.4, 28.7])];
 

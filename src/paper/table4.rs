@@ -1,11 +1,12 @@
 //! Table IV: number of distance computations by filter.
 //!
-//! The subscript of the paper's BB_m is said to be the box's side in cells. Its figures say otherwise: those of
-//! BB_8 are multiples of 64^3 = 262,144, and those of BB_64 multiples of 8^3, so m counts the boxes along
-//! an axis. Here the columns are named by cells; 64 cells stand beside BB_8. They are nodes
-//! only, too: queries at the boxes' centres are not in them. For BB + OT and BB + SD + OT the figures are sums, with
-//! the queries at boxes as their part in brackets. Section IV.D has the octree filter test signed distances, but
-//! then SD could save little after it; the counts of BB + OT fit unsigned ones, and so it is done here without SD.
+//! The subscript of the paper's BB_m is said to be the box's side in cells. Its figures say
+//! otherwise: those of BB_8 are multiples of 64^3 = 262,144, and those of BB_64 multiples of 8^3,
+//! so m counts the boxes along an axis. Here the columns are named by cells; 64 cells stand beside
+//! BB_8. They are nodes only, too: queries at the boxes' centres are not in them. For BB + OT and
+//! BB + SD + OT the figures are sums, with the queries at boxes as their part in brackets. Section
+//! IV.D has the octree filter test signed distances, but then SD could save little after it; the
+//! counts of BB + OT fit unsigned ones, and so it is done here without SD.
 
 use super::lab::Lab;
 use super::models::PaperModel;
@@ -14,12 +15,12 @@ use crate::band::{self, LeafBatch, count_queries};
 use crate::error::Error;
 use crate::filter::{BoxSide, FilterSettings, FilterStatistics, Switch};
 
-/// A published row, in thousands: offset; BB_8 to BB_64; the same with SD; BB + OT and BB + SD + OT, each with
-/// its part for boxes.
+/// A published row, in thousands: offset; BB_8 to BB_64; the same with SD; BB + OT and BB + SD +
+/// OT, each with its part for boxes.
 type Row = (f64, [u64; 4], [u64; 4], [u64; 2], [u64; 2]);
 
-/// \[LW11\] Table IV, on the terracotta warrior with 60k triangles. At 0.02 the paper prints 3,113 without
-/// its k for BB_16 + SD.
+/// \[LW11\] Table IV, on the terracotta warrior with 60k triangles. At 0.02 the paper prints 3,113
+/// without its k for BB_16 + SD.
 const PUBLISHED: [Row; 9] = [
     (-0.04, [5767, 2982, 2023, 1583], [3670, 1737, 1110, 556], [585, 159], [120, 41]),
     (-0.02, [5243, 2785, 1790, 1322], [4194, 2228, 1307, 819], [620, 152], [240, 72]),

@@ -12,8 +12,8 @@ use std::time::Instant;
 /// Published percentages: S_d = 0, 1, 2, up to 6; bisection up to 6.
 type Percent = [f64; 5];
 
-/// \[LW11\] Table V, first part: triangles, division of the stand-in's triangle sides for about the same
-/// ratio, intersected edges, percentages. Offset 0.02, 513^3.
+/// \[LW11\] Table V, first part: triangles, division of the stand-in's triangle sides for about the
+/// same ratio, intersected edges, percentages. Offset 0.02, 513^3.
 const BY_TRIANGLES: [(&str, u32, u64, Percent); 3] = [
     ("60k", 1, 85032, [71.5, 15.4, 7.0, 99.5, 6.4]),
     ("200k", 2, 85032, [51.3, 20.6, 13.3, 98.8, 6.4]),
@@ -47,8 +47,9 @@ const OFFSET: f64 = 0.02;
 /// The offset that the grid of all rows is fitted to.
 const LARGEST: f64 = 0.32;
 
-/// The paper's tolerance of 1e-5 in voxels of its grid of 512 cells. It has no unit; this is what its bisection
-/// column needs: six halvings try 63 points, and 6.4% of the edges have one within the tolerance.
+/// The paper's tolerance of 1e-5 in voxels of its grid of 512 cells. It has no unit; this is what
+/// its bisection column needs: six halvings try 63 points, and 6.4% of the edges have one within
+/// the tolerance.
 const PUBLISHED_TOLERANCE: f64 = 2.6e-4;
 
 pub(super) fn measure(lab: &Lab) -> Result<Report, Error> {

@@ -1,4 +1,5 @@
-//! Table VI: convex/concave analysis against the polygon-edge intersection test of Ju and Udeshi (2006).
+//! Table VI: convex/concave analysis against the polygon-edge intersection test of Ju and Udeshi
+//! (2006).
 
 use super::lab::Lab;
 use super::models::PaperModel;
@@ -7,7 +8,8 @@ use crate::contour::{ContourSettings, CutMethod, cut_times};
 use crate::edge::solve;
 use crate::error::Error;
 
-/// A published row: offset, triangles in thousands and seconds of the method in \[8\], the same of the analysis.
+/// A published row: offset, triangles in thousands and seconds of the method in \[8\], the same of
+/// the analysis.
 type Row = (f64, [(u64, f64); 2]);
 
 /// \[LW11\] Table VI.

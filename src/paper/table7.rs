@@ -1,7 +1,7 @@
 //! Table VII: the distance error of the result.
 //!
-//! The paper's errors are relative to the offset value: taken as parts of the diagonal, the dragon's maximum of
-//! 0.094 would be 48 voxels; relative to its offset of 0.02 it is about one.
+//! The paper's errors are relative to the offset value: taken as parts of the diagonal, the
+//! dragon's maximum of 0.094 would be 48 voxels; relative to its offset of 0.02 it is about one.
 
 use super::lab::Lab;
 use super::models::{Model, PaperModel};
@@ -73,8 +73,8 @@ pub(super) fn measure(lab: &Lab) -> Result<Report, Error> {
 pub(super) fn errors(lab: &Lab, model: &Model, result: &OffsetResult) -> Result<DistanceReport, Error> {
     let settings = VerifySettings {
         distance: Length::Units(result.statistics.distance),
-        // verify looks at no more than four times as many vertices and edge midpoints: with a sample for each
-        // triangle it leaves none out, and a table of maxima wants them all.
+        // verify looks at no more than four times as many vertices and edge midpoints: with a
+        // sample for each triangle it leaves none out, and a table of maxima wants them all.
         samples: result.mesh.triangles.len(),
         ..VerifySettings::default()
     };

@@ -1,4 +1,5 @@
-//! Random small meshes of the kinds that people send: needles, sheets, soups, doubled, nested, far away.
+//! Random small meshes of the kinds that people send: needles, sheets, soups, doubled, nested, far
+//! away.
 
 use super::random::Random;
 use exocarp::mesh::{TriMesh, shapes};

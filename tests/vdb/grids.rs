@@ -18,7 +18,8 @@ fn leaves_come_out_as_they_went_in() {
     assert_eq!(band.surface.leaf_count(), leaves.origins.len());
     let active: u32 = leaves.active.iter().flatten().map(|w| w.count_ones()).sum();
     assert_eq!(band.surface.active_voxels(), u64::from(active));
-    // 2 KiB of values per leaf, and two inner nodes in each octant around the origin, 300 KB together.
+    // 2 KiB of values per leaf, and two inner nodes in each octant around the origin, 300 KB
+    // together.
     let values = 4 * leaves.values.len() as u64;
     let memory = band.surface.memory();
     assert!((values..values * 11 / 10 + 8 * 300_000).contains(&memory), "{memory}");

@@ -44,9 +44,9 @@ fn all_offsets_pass_the_checks_but_the_gradient_at_creases() {
         for distance in [0.1, 0.0] {
             let band = level_set(&(shape.make)(4), distance, 0.06).band.unwrap();
             let failed = band.surface.check_level_set(&run()).unwrap();
-            // Test 9 wants a gradient of about one on both sides of the surface. The exact distance has kinks
-            // where the offset surface has creases, so it cannot hold there (nor does it in level sets that
-            // OpenVDB makes of sharp models).
+            // Test 9 wants a gradient of about one on both sides of the surface. The exact distance
+            // has kinks where the offset surface has creases, so it cannot hold there (nor does it
+            // in level sets that OpenVDB makes of sharp models).
             let unexpected: Vec<&String> = failed.iter().filter(|m| !m.starts_with("test 9")).collect();
             assert!(unexpected.is_empty(), "{} {distance}: {unexpected:?}", shape.name);
         }
@@ -55,8 +55,8 @@ fn all_offsets_pass_the_checks_but_the_gradient_at_creases() {
 
 #[test]
 fn bands_are_level_sets_at_every_voxel_size() {
-    // A box whose faces lie in planes of nodes, so that many nodes are at exactly three voxels; and one that
-    // is turned.
+    // A box whose faces lie in planes of nodes, so that many nodes are at exactly three voxels; and
+    // one that is turned.
     let turned = |mut mesh: TriMesh| {
         let rotation = glam::DQuat::from_axis_angle(glam::DVec3::new(1.0, 2.0, -0.5).normalize(), 0.7);
         mesh.vertices.iter_mut().for_each(|v| *v = (rotation * glam::DVec3::from(*v)).to_array());
@@ -88,8 +88,8 @@ fn bands_are_level_sets_at_every_voxel_size() {
     assert!(at_three_voxels > 1000, "{at_three_voxels}");
 }
 
-/// Signed distance by looking at every triangle: the smallest distance, negative where the triangles' solid
-/// angles add up to a full turn.
+/// Signed distance by looking at every triangle: the smallest distance, negative where the
+/// triangles' solid angles add up to a full turn.
 fn brute_force(mesh: &TriMesh, p: [f64; 3]) -> f64 {
     let (mut nearest, mut turns) = (f64::INFINITY, 0.0);
     for (t, &vertices) in mesh.triangles.iter().enumerate() {

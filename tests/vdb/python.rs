@@ -5,8 +5,8 @@ use exocarp::vdb::{Band, ClosestGrid, Compression, VdbError, VdbOptions, info, o
 use std::path::Path;
 use std::process::Command;
 
-/// The first Python that has an OpenVDB module. The system's comes first: distributions package the module
-/// for that one.
+/// The first Python that has an OpenVDB module. The system's comes first: distributions package the
+/// module for that one.
 fn python() -> Option<&'static str> {
     ["/usr/bin/python3", "python3"].into_iter().find(|python| {
         ["pyopenvdb", "openvdb"].iter().any(|module| {
@@ -16,7 +16,8 @@ fn python() -> Option<&'static str> {
     })
 }
 
-/// Runs a script of tests/python and returns what it says. Without Python, says by name what is skipped.
+/// Runs a script of tests/python and returns what it says. Without Python, says by name what is
+/// skipped.
 pub fn run(test: &str, script: &str, arguments: &[&str]) -> Option<String> {
     let Some(python) = python() else {
         eprintln!("SKIPPED vdb::python::{test}: no python3 with pyopenvdb");

@@ -196,7 +196,8 @@ fn renderings(
     }
     if let Some(spot) = spots.first() {
         let section = spot.plane;
-        // From above the surface, a little along the crease, so that its edge is seen against the light.
+        // From above the surface, a little along the crease, so that its edge is seen against the
+        // light.
         let towards = section.up * 0.8 + section.normal() * 0.55 + section.right * 0.25;
         let camera = Camera::at(section.origin, CLOSE * comparison.voxel, towards, section.up);
         html += &figure(

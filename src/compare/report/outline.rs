@@ -6,8 +6,8 @@ use crate::run::RunSettings;
 use glam::DVec2;
 use rayon::prelude::*;
 
-/// Cells along a side of the square in which the curve is traced. Two cells are about a pixel of the picture,
-/// and the ends of each piece are exact, so a finer one would look the same.
+/// Cells along a side of the square in which the curve is traced. Two cells are about a pixel of
+/// the picture, and the ends of each piece are exact, so a finer one would look the same.
 const CELLS: usize = 280;
 
 /// Halvings and regula falsi steps for a point of the curve: far below a thousandth of a cell.

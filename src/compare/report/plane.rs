@@ -42,9 +42,9 @@ impl Plane {
 /// A piece of a curve on a plane.
 pub type Segment = [DVec2; 2];
 
-/// The intersection of a mesh with a plane, as far as it is not farther than `half` from the plane's origin
-/// in x or y: a segment per triangle that the plane crosses. A corner on the plane counts as above it, so a
-/// closed mesh leaves closed curves.
+/// The intersection of a mesh with a plane, as far as it is not farther than `half` from the
+/// plane's origin in x or y: a segment per triangle that the plane crosses. A corner on the plane
+/// counts as above it, so a closed mesh leaves closed curves.
 ///
 /// # Panics
 /// When a vertex number is out of range.

@@ -4,7 +4,8 @@ use super::plane::Plane;
 use crate::mesh::TriMesh;
 use glam::{DVec2, DVec3};
 
-/// What is looked at: the picture plane, looked at against its normal, and half the width of the picture.
+/// What is looked at: the picture plane, looked at against its normal, and half the width of the
+/// picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
     /// The middle of the picture and its directions.
@@ -34,7 +35,8 @@ pub struct Frame {
 }
 
 impl Camera {
-    /// Sees a square of side 2 `half` around `middle` from the direction `towards`, with `up` upwards.
+    /// Sees a square of side 2 `half` around `middle` from the direction `towards`, with `up`
+    /// upwards.
     pub fn at(middle: DVec3, half: f64, towards: DVec3, up: DVec3) -> Camera {
         let towards = towards.try_normalize().unwrap_or(DVec3::Z);
         let up = (up - towards * up.dot(towards)).try_normalize();

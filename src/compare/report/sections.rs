@@ -17,12 +17,12 @@ const HALF: f64 = 3.5;
 /// Pixels of a picture's width.
 const SIDE: f64 = 340.0;
 
-/// Pixels from the top of the square to the picture's upper and lower border: spots lie in the middle and
-/// little happens far above and below.
+/// Pixels from the top of the square to the picture's upper and lower border: spots lie in the
+/// middle and little happens far above and below.
 const VISIBLE: [f64; 2] = [28.0, 312.0];
 
-/// One picture per method: its outline over the true curve at the spot. The plane is the same, and so is the
-/// scale.
+/// One picture per method: its outline over the true curve at the spot. The plane is the same, and
+/// so is the scale.
 pub fn panels(
     spot: &Spot,
     comparison: &Comparison,
@@ -90,7 +90,8 @@ fn path(segments: &[Segment], half: f64) -> String {
 
 fn scale_bar(svg: &mut Svg) {
     let voxel = SIDE / (2.0 * HALF);
-    // Below the middle, within the solid: the curve passes through the middle and leaves at the borders.
+    // Below the middle, within the solid: the curve passes through the middle and leaves at the
+    // borders.
     let (x, y) = (0.5 * (SIDE - voxel), VISIBLE[1] - VISIBLE[0] - 14.0);
     svg.line([x, y, x + voxel, y], "scale");
     svg.text([x + 0.5 * voxel, y - 6.0], Anchor::Middle, "tick", "1 voxel");

@@ -29,12 +29,12 @@ pub struct Truth<'a, 'm> {
     pub voxel: f64,
 }
 
-/// Errors in voxels at the ends of the colour ramp, which is logarithmic: below the first nobody sees
-/// anything, above the second everybody does.
+/// Errors in voxels at the ends of the colour ramp, which is logarithmic: below the first nobody
+/// sees anything, above the second everybody does.
 pub const RAMP_ENDS: [f64; 2] = [0.001, 1.0];
 
-/// The ramp: pale blue-grey, yellow, orange, red, black-purple. It gets darker all the way, so it reads in grey
-/// and with any colour vision.
+/// The ramp: pale blue-grey, yellow, orange, red, black-purple. It gets darker all the way, so it
+/// reads in grey and with any colour vision.
 const RAMP: [[u8; 3]; 5] = [[236, 240, 244], [252, 214, 110], [240, 132, 50], [196, 42, 66], [52, 12, 74]];
 
 /// Samples per pixel and direction: smooth outlines and wires.
@@ -53,7 +53,8 @@ pub fn ramp(error: f64) -> [u8; 3] {
     })
 }
 
-/// A picture of `mesh`, `size` pixels wide, as PNG. The error is measured at the point that each pixel shows.
+/// A picture of `mesh`, `size` pixels wide, as PNG. The error is measured at the point that each
+/// pixel shows.
 ///
 /// # Errors
 /// [`CompareError::Picture`]: never for pictures made here; the encoder wants it said.
@@ -100,7 +101,8 @@ fn colours(
         let colour = ramp((sample.distance - truth.r).abs() / truth.voxel).map(f32::from);
         let [a, b, c] = mesh.corners(hit.triangle as usize).map(DVec3::from);
         let normal = (b - a).cross(c - a).try_normalize().unwrap_or(plane.normal());
-        // Lambert, both sides alike, with as much from everywhere that colours stay legible in the shade.
+        // Lambert, both sides alike, with as much from everywhere that colours stay legible in the
+        // shade.
         let lambert = 0.7 + 0.3 * normal.dot(light).abs();
         let wire = match wires {
             Wires::Drawn if hit.edge < 0.5 * OVERSAMPLING as f64 => 0.7,

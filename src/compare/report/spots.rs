@@ -68,11 +68,12 @@ pub fn spots(comparison: &Comparison, distance: &SignedDistance, run: &RunSettin
     spots
 }
 
-/// Angles of a crease: below the first it may be a curved part; above the second it is the rim of a sheet
-/// that is about to vanish, where everything is wrong.
+/// Angles of a crease: below the first it may be a curved part; above the second it is the rim of a
+/// sheet that is about to vanish, where everything is wrong.
 const CREASE: std::ops::Range<f64> = 0.5..2.1;
 
-/// The point on `mesh`, an offset surface, where the direction to the model turns most along an edge.
+/// The point on `mesh`, an offset surface, where the direction to the model turns most along an
+/// edge.
 fn crease(mesh: &TriMesh, distance: &SignedDistance, run: &RunSettings) -> Option<DVec3> {
     run.install(|| {
         let gradients: Vec<DVec3> = mesh
@@ -100,8 +101,8 @@ fn crease(mesh: &TriMesh, distance: &SignedDistance, run: &RunSettings) -> Optio
     })
 }
 
-/// The plane through `at` on which the true offset surface turns most: perpendicular to its crease if there
-/// is one, along its normal otherwise.
+/// The plane through `at` on which the true offset surface turns most: perpendicular to its crease
+/// if there is one, along its normal otherwise.
 pub fn plane(at: DVec3, distance: &SignedDistance, r: f64, h: f64) -> Plane {
     // As far from the spot as its worst error may be, and a little more.
     let reach = 1.5 * h;
