@@ -46,7 +46,7 @@ pub enum Error {
     Vdb(#[from] VdbError),
     /// A verification cannot be done.
     #[error(transparent)]
-    Verify(#[from] VerifyError),
+    Verify(VerifyError),
     /// A patch cannot be thickened.
     #[error(transparent)]
     Thicken(#[from] ThickenError),
@@ -66,6 +66,15 @@ impl From<CompareError> for Error {
         match error {
             CompareError::Cancelled => Error::Cancelled(Cancelled),
             other => Error::Compare(other),
+        }
+    }
+}
+
+impl From<VerifyError> for Error {
+    fn from(error: VerifyError) -> Self {
+        match error {
+            VerifyError::Cancelled => Error::Cancelled(Cancelled),
+            other => Error::Verify(other),
         }
     }
 }

@@ -9,8 +9,8 @@ use super::session::Session;
 use exocarp::mesh::{Topology, TriMesh};
 use exocarp::offset::Length;
 use exocarp::verify::{
-    IntersectionReport, ShellReport, Size, Statistics, Subject, TopologyReport, VerifyReport, VerifySettings,
-    verify,
+    IntersectionReport, ReportedLength, ShellReport, Statistics, Subject, TopologyReport, VerifyReport,
+    VerifySettings, verify,
 };
 use serde::Serialize;
 
@@ -210,7 +210,7 @@ fn sizes(sets: &[(&str, &Statistics)]) -> String {
             continue;
         }
         let sizes = [s.mean, s.rms, s.p999, s.max];
-        let line = |of: fn(&Size) -> Option<f64>| -> Option<String> {
+        let line = |of: fn(&ReportedLength) -> Option<f64>| -> Option<String> {
             sizes.iter().map(|size| of(size).map(|x| format!("{x:>12.3e}"))).collect()
         };
         let samples = grouped(s.samples as u64);
@@ -226,7 +226,7 @@ fn sizes(sets: &[(&str, &Statistics)]) -> String {
     text
 }
 
-fn place(name: &str, size: Size, at: Option<[f64; 3]>) -> String {
+fn place(name: &str, size: ReportedLength, at: Option<[f64; 3]>) -> String {
     at.map_or(String::new(), |at| row(name, &format!("{:>12.3e}   at {}", size.units, point(at))))
 }
 

@@ -78,5 +78,5 @@ pub(super) fn errors(lab: &Lab, model: &Model, result: &OffsetResult) -> Result<
         samples: result.mesh.triangles.len(),
         ..VerifySettings::default()
     };
-    distance_error(&model.mesh, &result.mesh, &settings, lab.run)
+    Ok(distance_error(&model.mesh, &result.mesh, &settings, lab.run)?)
 }

@@ -1,10 +1,10 @@
 //! What all parts of a verification look at: INPUT with its distance, OUTPUT with its tree, the scale.
 
+use super::error::{VerifyError, Which};
 use super::sampling::{Random, Scale};
-use super::settings::{Subject, VerifyError, VerifySettings, Which};
+use super::settings::{Subject, VerifySettings};
 use super::welded::{Welded, check};
 use crate::distance::SignedDistance;
-use crate::error::Error;
 use crate::geom::aabb::Aabb;
 use crate::geom::box_tree::BoxTree;
 use crate::mesh::{Topology, TriMesh, clean, measure};
@@ -25,7 +25,7 @@ pub(super) struct Meshes {
 
 impl Meshes {
     /// # Errors
-    /// [`Error::Verify`]: a mesh that nothing can be said about.
+    /// [`VerifyError`]: a mesh that nothing can be said about.
     pub fn new(input: &TriMesh, output: &TriMesh) -> Result<Self, VerifyError> {
         check(input, Which::Input)?;
         let (input, _) = clean(input.clone());
@@ -68,12 +68,12 @@ impl<'m> Case<'m> {
     /// pool.
     ///
     /// # Errors
-    /// [`Error::Verify`]: a distance that is not finite for this INPUT. [`Error::Cancelled`].
+    /// [`VerifyError`]: a distance that is not finite for this INPUT. [`VerifyError::Cancelled`].
     pub fn new(
         meshes: &'m Meshes,
         settings: &'m VerifySettings,
         run: &'m RunSettings,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self, VerifyError> {
         let distance = SignedDistance::new(&meshes.input, &meshes.input_topology);
         run.check()?;
         let tree = BoxTree::new(
@@ -91,7 +91,7 @@ impl<'m> Case<'m> {
             Length::OfDiagonal(fraction) => fraction * diagonal,
         };
         if !r.is_finite() {
-            return Err(VerifyError::Setting { name: "distance", range: "a finite number", value: r }.into());
+            return Err(VerifyError::Setting { name: "distance", range: "a finite number", value: r });
         }
         Ok(Case {
             settings,

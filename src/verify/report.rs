@@ -49,7 +49,7 @@ pub struct Judged {
 
 /// A length, in the three units in which offsets are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Size {
+pub struct ReportedLength {
     /// In model units.
     pub units: f64,
     /// In percent of the diagonal of INPUT's bounding box.
@@ -64,13 +64,13 @@ pub struct Statistics {
     /// Number of samples; with none, everything else is 0.
     pub samples: usize,
     /// Mean.
-    pub mean: Size,
+    pub mean: ReportedLength,
     /// Root mean square.
-    pub rms: Size,
+    pub rms: ReportedLength,
     /// The error that 99.9 percent of the samples do not exceed.
-    pub p999: Size,
+    pub p999: ReportedLength,
     /// The largest.
-    pub max: Size,
+    pub max: ReportedLength,
     /// The sample with the largest error (the first of several).
     pub max_at: Option<[f64; 3]>,
 }
@@ -168,7 +168,7 @@ pub struct DistanceReport {
     /// The midpoints of edges: all, or four times as many as there are samples, evenly chosen.
     pub edge_midpoints: Statistics,
     /// The largest error of all.
-    pub max: Size,
+    pub max: ReportedLength,
     /// Where it is.
     pub max_at: Option<[f64; 3]>,
     /// The share of the surface samples on the wrong side of INPUT, 0 to 1; `None` if INPUT is not closed.
@@ -200,7 +200,7 @@ pub struct MissingReport {
     /// From the caps about vertices.
     pub vertices: Statistics,
     /// The largest distance of all.
-    pub max: Size,
+    pub max: ReportedLength,
     /// Where it is.
     pub max_at: Option<[f64; 3]>,
     /// A point farther from OUTPUT than this counts as missing: the tolerance if given, otherwise half a
@@ -252,11 +252,11 @@ pub struct Thickness {
     /// Number of samples.
     pub samples: usize,
     /// The smallest.
-    pub min: Size,
+    pub min: ReportedLength,
     /// Mean.
-    pub mean: Size,
+    pub mean: ReportedLength,
     /// The largest.
-    pub max: Size,
+    pub max: ReportedLength,
     /// Where the wall is thinnest.
     pub min_at: [f64; 3],
     /// Where it is thickest.

@@ -1,6 +1,6 @@
 //! Reproducible samples, and their statistics.
 
-use super::report::{Size, Statistics};
+use super::report::{ReportedLength, Statistics};
 use crate::run::{Cancelled, RunSettings};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -108,9 +108,9 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    pub fn size(&self, units: f64) -> Size {
+    pub fn length(&self, units: f64) -> ReportedLength {
         let percent_of_diagonal = 100.0 * units / self.diagonal;
-        Size { units, percent_of_diagonal, voxels: self.voxel.map(|h| units / h) }
+        ReportedLength { units, percent_of_diagonal, voxels: self.voxel.map(|h| units / h) }
     }
 
     /// Statistics of errors; `at` tells where sample i is.
@@ -123,10 +123,10 @@ impl Scale {
         let p999 = *errors.select_nth_unstable_by(rank, f64::total_cmp).1;
         Statistics {
             samples,
-            mean: self.size(sum / samples as f64),
-            rms: self.size((squares / samples as f64).sqrt()),
-            p999: self.size(p999),
-            max: self.size(max),
+            mean: self.length(sum / samples as f64),
+            rms: self.length((squares / samples as f64).sqrt()),
+            p999: self.length(p999),
+            max: self.length(max),
             max_at: Some(at(worst).to_array()),
         }
     }
@@ -139,7 +139,7 @@ pub(super) fn largest(errors: &[f64]) -> Option<(usize, f64)> {
 }
 
 /// The one with the largest error.
-pub(super) fn worst(all: &[&Statistics]) -> (Size, Option<[f64; 3]>) {
+pub(super) fn worst(all: &[&Statistics]) -> (ReportedLength, Option<[f64; 3]>) {
     let largest = all.iter().copied().reduce(|a, b| if b.max.units > a.max.units { b } else { a });
-    largest.map_or((Size::default(), None), |s| (s.max, s.max_at))
+    largest.map_or((ReportedLength::default(), None), |s| (s.max, s.max_at))
 }

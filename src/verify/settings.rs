@@ -1,6 +1,6 @@
 //! What to judge by.
 
-use crate::mesh::MeshError;
+use super::error::VerifyError;
 use crate::offset::Length;
 
 /// The seed when none is given; any would do.
@@ -63,50 +63,6 @@ impl Default for VerifySettings {
 /// The usual limit between a crease and a curved surface's facets. Smaller, and coarse spheres are full of
 /// creases; larger, and chamfers lose theirs.
 const DEFAULT_CREASE_ANGLE: f64 = 30.0;
-
-/// Why a verification cannot be done.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum VerifyError {
-    /// A mesh has no triangles with different corners.
-    #[error("{0} has no triangles")]
-    NoTriangles(Which),
-    /// A vertex or a triangle cannot be worked with.
-    #[error("{which}: {source}")]
-    Mesh {
-        /// The mesh.
-        which: Which,
-        /// What is wrong with it.
-        source: MeshError,
-    },
-    /// A setting is out of range.
-    #[error("the {name} must be {range}, not {value}")]
-    Setting {
-        /// The setting.
-        name: &'static str,
-        /// What it may be.
-        range: &'static str,
-        /// What it is.
-        value: f64,
-    },
-}
-
-/// One of the two meshes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Which {
-    /// The mesh that was offset.
-    Input,
-    /// The mesh to judge.
-    Output,
-}
-
-impl std::fmt::Display for Which {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Which::Input => "INPUT",
-            Which::Output => "OUTPUT",
-        })
-    }
-}
 
 impl VerifySettings {
     /// Checks everything that does not need the meshes.

@@ -71,9 +71,9 @@ fn measure(case: &Case, surface: &[u32], offset: &[u32]) -> Result<Option<Thickn
     let mean = thickness[..drawn].iter().sum::<f64>() / drawn.max(1) as f64;
     Ok(Some(Thickness {
         samples: count,
-        min: case.scale.size(-min),
-        mean: case.scale.size(mean),
-        max: case.scale.size(max),
+        min: case.scale.length(-min),
+        mean: case.scale.length(mean),
+        max: case.scale.length(max),
         min_at: at(thinnest).to_array(),
         max_at: at(thickest).to_array(),
     }))

@@ -1,6 +1,6 @@
 //! OUTPUT with equal positions made one vertex, and what that left without shape set aside.
 
-use super::settings::{VerifyError, Which};
+use super::error::{VerifyError, Which};
 use crate::geom::predicates::projection_axis;
 use crate::mesh::{CleanReport, Topology, TriMesh, weld};
 use rayon::prelude::*;
