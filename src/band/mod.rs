@@ -10,6 +10,7 @@ mod layers;
 mod leaf;
 mod leaves;
 mod lone_nodes;
+mod node_triangles;
 mod ring;
 mod signs;
 #[cfg(test)]
@@ -24,4 +25,5 @@ pub use jumps::leaves_at_jumps;
 pub use layers::{Layers, count_layers};
 pub use leaves::{LeafBatch, inside_mask};
 pub use lone_nodes::{LoneNodes, join_lone_nodes};
+pub use node_triangles::{LeafTriangles, NearTriangles, NodeTriangles, PartTriangles};
 pub use signs::{LeafId, SignField};

@@ -1,10 +1,10 @@
 //! The intersected edges of one leaf, block by block: edges that start in a block of 2^3 nodes share its list.
 
 use super::hybrid::{Direction, GridEdge, NodeTriangle, Root, Solver};
-use super::settings::{NearTriangles, RootMethod};
+use super::settings::RootMethod;
 use super::statistics::EdgeStatistics;
-use super::{Crossing, EdgeNumbers, LeafTriangles, bisection};
-use crate::band::{LeafId, SignField};
+use super::{Crossing, EdgeNumbers, bisection};
+use crate::band::{LeafId, LeafTriangles, NearTriangles, SignField};
 use crate::candidates::CandidateLists;
 use crate::lattice::{Axis, Ijk, Lattice, LeafMask};
 use glam::DVec3;

@@ -8,7 +8,6 @@ mod crossings;
 mod following;
 mod hybrid;
 mod leaf;
-mod node_triangles;
 mod regions;
 mod settings;
 mod shared;
@@ -16,7 +15,6 @@ mod solve;
 mod statistics;
 
 pub use crossings::{Crossing, Crossings, EdgeId, EdgeNumbers, TooManyEdges};
-pub use node_triangles::{LeafTriangles, NodeTriangles, PartTriangles};
-pub use settings::{EdgeSettings, NearTriangles, RootMethod};
+pub use settings::{EdgeSettings, RootMethod};
 pub use solve::{solve, solve_by};
 pub use statistics::EdgeStatistics;

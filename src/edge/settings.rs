@@ -1,18 +1,7 @@
 //! Which surface the edges are intersected with, and by which method.
 
-use super::NodeTriangles;
 use super::hybrid::TOLERANCE;
-use crate::candidates::CandidateLists;
 use crate::lattice::{Lattice, Slab};
-
-/// What is known of the triangles that are near the edges.
-#[derive(Clone, Debug, Default)]
-pub struct NearTriangles {
-    /// The closest triangles of the band's nodes.
-    pub nodes: NodeTriangles,
-    /// All triangles that can be closest to the points of an edge; without, the hierarchy is asked.
-    pub lists: Option<CandidateLists>,
-}
 
 /// How the intersection of an edge is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

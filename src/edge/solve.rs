@@ -2,10 +2,10 @@
 
 use super::hybrid::Solver;
 use super::leaf::LeafSolver;
-use super::settings::{EdgeSettings, NearTriangles, RootMethod};
+use super::settings::{EdgeSettings, RootMethod};
 use super::statistics::EdgeStatistics;
 use super::{Crossing, Crossings, EdgeNumbers};
-use crate::band::{LeafId, SignField};
+use crate::band::{LeafId, NearTriangles, SignField};
 use crate::distance::SignedDistance;
 use crate::lattice::{Lattice, Slab};
 use crate::run::{Cancelled, Phase, RunSettings, SHARE};

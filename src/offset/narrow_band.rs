@@ -1,10 +1,12 @@
 //! The band as the edges and the contour need it, in plain arrays; and into OpenVDB, where it is to be kept.
 
 use super::stored_band::{StoredBand, Wanted};
-use crate::band::{self, BOXES_PER_BATCH, BandSettings, InsideBlocks, LeafBatch, LoneNodes, SignField};
+use crate::band::{
+    self, BOXES_PER_BATCH, BandSettings, InsideBlocks, LeafBatch, LoneNodes, NearTriangles, NodeTriangles,
+    PartTriangles, SignField,
+};
 use crate::candidates::{BlockLists, CandidateLists};
 use crate::distance::SignedDistance;
-use crate::edge::{NearTriangles, NodeTriangles, PartTriangles};
 use crate::error::Error;
 use crate::filter::FilterStatistics;
 use crate::lattice::{Ijk, LeafMask, Slab};

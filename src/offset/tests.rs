@@ -1,7 +1,8 @@
 //! The whole way, against closed forms and brute force.
 
 use super::*;
-use crate::edge::{EdgeNumbers, EdgeSettings, NearTriangles, RootMethod, solve, solve_by};
+use crate::band::NearTriangles;
+use crate::edge::{EdgeNumbers, EdgeSettings, RootMethod, solve, solve_by};
 use crate::lattice::Slab;
 use crate::mesh::{measure, shapes};
 use crate::offset::narrow_band::NarrowBand;

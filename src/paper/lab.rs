@@ -2,9 +2,9 @@
 
 use super::PaperSettings;
 use super::models::{Model, PaperModel};
-use crate::band::{BandSettings, SignField};
+use crate::band::{BandSettings, NearTriangles, SignField};
 use crate::distance::SignedDistance;
-use crate::edge::{EdgeNumbers, NearTriangles};
+use crate::edge::EdgeNumbers;
 use crate::error::Error;
 use crate::offset::narrow_band::NarrowBand;
 use crate::offset::{Length, OffsetResult, OffsetSettings, VoxelSize, narrow_band, offset};

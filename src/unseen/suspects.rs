@@ -1,10 +1,9 @@
 //! Points between nodes of one sign that have the other one.
 
 use super::directions::{DirectionTable, Directions};
-use crate::band::{LeafId, SignField};
+use crate::band::{LeafId, NearTriangles, SignField};
 use crate::candidates::CandidateLists;
 use crate::distance::{Sample, SignedDistance};
-use crate::edge::NearTriangles;
 use crate::lattice::{Axis, Ijk, LEAF_DIM, LEAF_SIZE, Lattice, Slab};
 use crate::run::{Cancelled, RunSettings, SHARE};
 use glam::DVec3;

@@ -3,10 +3,10 @@
 use super::dilate::near_nodes;
 use super::edge_search::{Edge, End, Next, Part, Search};
 use super::region::Solid;
-use crate::band::{LeafId, SignField};
+use crate::band::{LeafId, NodeTriangles, SignField};
 use crate::candidates::{Candidates, block_in_leaf};
 use crate::distance::Sample;
-use crate::edge::{Crossing, Crossings, EdgeNumbers, NodeTriangles};
+use crate::edge::{Crossing, Crossings, EdgeNumbers};
 use crate::error::Error;
 use crate::lattice::{Axis, Ijk, Lattice, LeafMask, bits};
 use crate::run::{Cancelled, Phase, RunSettings, SHARE};

@@ -1,10 +1,9 @@
 //! Which nodes are in the solid (\[WC13\] section 3): those of the band around S whose closest triangle says so.
 
 use super::region::{Place, Solid};
-use crate::band::{BandSettings, Below, SignField, build_below};
+use crate::band::{BandSettings, Below, NodeTriangles, PartTriangles, SignField, build_below};
 use crate::candidates::CandidateLists;
 use crate::distance::SignedDistance;
-use crate::edge::{NodeTriangles, PartTriangles};
 use crate::error::Error;
 use crate::lattice::{Ijk, LEAF_SIZE, Lattice, LeafMask, Slab};
 use crate::run::{RunSettings, SHARE};

@@ -1,11 +1,21 @@
 //! The closest triangles of the band's nodes. One node of seven is in the band, so only those are kept, found by their ranks
 //! in bit masks.
 
-use crate::band::{LeafId, SignField};
+use super::{LeafId, SignField};
+use crate::candidates::CandidateLists;
 use crate::lattice::{Ijk, LEAF_SIZE, LeafMask, bits};
 
 /// The slot of a leaf of the ring.
 const RING: [u32; 2] = [u32::MAX; 2];
+
+/// What is known of the triangles that are near the edges.
+#[derive(Clone, Debug, Default)]
+pub struct NearTriangles {
+    /// The closest triangles of the band's nodes.
+    pub nodes: NodeTriangles,
+    /// All triangles that can be closest to the points of an edge; without, the hierarchy is asked.
+    pub lists: Option<CandidateLists>,
+}
 
 /// The closest triangles of the band's nodes, by leaf of a [`SignField`].
 #[derive(Clone, Debug, Default)]
