@@ -10,6 +10,7 @@ mod layers;
 mod leaf;
 mod leaves;
 mod lone_nodes;
+pub(crate) mod narrow_band;
 mod node_triangles;
 mod ring;
 mod signs;

@@ -1,6 +1,6 @@
 //! What an offset takes, told before the band is made.
 
-use super::stored_band::Wanted;
+use crate::band::narrow_band::StoredPart;
 use crate::band::{BandSettings, count_layers};
 use crate::distance::SignedDistance;
 use crate::edge::TooManyEdges;
@@ -97,7 +97,7 @@ fn fixed_bytes(mesh: &TriMesh) -> u64 {
 pub(super) fn check_memory(
     distance: &SignedDistance,
     settings: &BandSettings,
-    stored: Wanted,
+    stored: StoredPart,
     max_memory: Option<u64>,
     run: &RunSettings,
 ) -> Result<(), Error> {
@@ -105,9 +105,9 @@ pub(super) fn check_memory(
     let (mesh, voxel) = (distance.mesh(), settings.lattice.voxel);
     let wide = settings.half_width - 1.0;
     let stored = match stored {
-        Wanted::Nothing => 0.0,
-        Wanted::LevelSet => BYTES_PER_STORED_CELL[0],
-        Wanted::WithClosest => BYTES_PER_STORED_CELL[0] + BYTES_PER_CLOSEST_CELL,
+        StoredPart::Nothing => 0.0,
+        StoredPart::LevelSet => BYTES_PER_STORED_CELL[0],
+        StoredPart::WithClosest => BYTES_PER_STORED_CELL[0] + BYTES_PER_CLOSEST_CELL,
     } + wide * BYTES_PER_STORED_CELL[1];
     let fixed = fixed_bytes(mesh) as f64;
     let of_cells = |cells: f64| {

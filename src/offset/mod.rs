@@ -9,7 +9,6 @@
 //! oriented and free of self-intersections, on the coordinates of the chosen [`Precision`]; the same bytes
 //! for every number of threads.
 
-pub(crate) mod narrow_band;
 mod in_slabs;
 mod memory;
 mod job;
@@ -33,6 +32,7 @@ pub use statistics::{EngineTimes, OffsetStatistics, VdbStatistics};
 pub use unsuitable::{EmptyResult, InputError};
 
 use crate::band::BandSettings;
+use crate::band::narrow_band::{self, StoredPart};
 use crate::contour::SlabContour;
 use crate::distance::SignedDistance;
 use crate::error::Error;
@@ -43,7 +43,7 @@ use crate::vdb::Band;
 use on_slab::on_slab;
 use resolving::until_seen;
 use std::time::Instant;
-use stored_band::{StoredBand, Wanted};
+use stored_band::StoredBand;
 
 /// What [`offset`] returns.
 #[derive(Debug)]
@@ -70,7 +70,7 @@ pub struct OffsetResult {
 /// - [`Error::Cancelled`].
 pub fn offset(mesh: &TriMesh, settings: &OffsetSettings, run: &RunSettings) -> Result<OffsetResult, Error> {
     Prepared::with(mesh, settings, run, |prepared| {
-        let stored = Wanted::by(settings);
+        let stored = StoredPart::by(settings);
         let fits = |band_settings: &BandSettings| {
             memory::check_memory(prepared.distance, band_settings, stored, settings.max_memory, run).is_ok()
         };
@@ -93,12 +93,12 @@ pub fn offset_band(
 ) -> Result<OffsetResult, Error> {
     Prepared::with(mesh, settings, run, |prepared| {
         let Prepared { distance, ref band_settings, times, .. } = *prepared;
-        let stored = Wanted::by(&OffsetSettings { keep_band: true, ..settings.clone() });
+        let stored = StoredPart::by(&OffsetSettings { keep_band: true, ..settings.clone() });
         memory::check_memory(distance, band_settings, stored, settings.max_memory, run)?;
         let mut statistics = OffsetStatistics::new(band_settings, times);
         let started = Instant::now();
         let mut stored = StoredBand::new(band_settings, settings)?;
-        statistics.add_band(&narrow_band::store(distance, band_settings, &mut stored, run)?);
+        statistics.add_band(&narrow_band::store::<Error>(distance, band_settings, &mut stored, run)?);
         let band = stored.finish();
         statistics.times.band += started.elapsed().as_secs_f64();
         if statistics.vdb.leaves == 0 {

@@ -1,9 +1,9 @@
 //! The stages on one slab of the lattice, or on all of it.
 
-use super::narrow_band::{self, NarrowBand};
 use super::stored_band::StoredBand;
 use super::surface::OffsetSurface;
 use super::{OffsetSettings, OffsetStatistics};
+use crate::band::narrow_band::{self, BandStore, NarrowBand};
 use crate::band::{BandSettings, NearTriangles, grid_nodes};
 use crate::contour::{ContourSettings, STRAY, SlabContour, contour_slab};
 use crate::distance::SignedDistance;
@@ -26,8 +26,9 @@ pub(super) fn on_slab(
     run: &RunSettings,
 ) -> Result<Option<(SlabContour, Suspects)>, Error> {
     let BandSettings { lattice, r, slab, .. } = *band_settings;
+    let store = stored.map(|stored| -> &mut (dyn BandStore<Error> + Send) { stored });
     let started = Instant::now();
-    let NarrowBand { signs, near, counts } = narrow_band::build(distance, band_settings, stored, run)?;
+    let NarrowBand { signs, near, counts } = narrow_band::build(distance, band_settings, store, run)?;
     statistics.add_band(&counts);
     statistics.times.band += started.elapsed().as_secs_f64();
 

@@ -1,6 +1,6 @@
 //! What happened during an offset: the parts of the statistics file that the engine knows.
 
-use super::narrow_band::BandCounts;
+use crate::band::narrow_band::BandCounts;
 use crate::band::{BandSettings, LoneNodes};
 use crate::contour::ContourStatistics;
 use crate::edge::EdgeStatistics;

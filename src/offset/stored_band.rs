@@ -1,38 +1,19 @@
 //! The band in OpenVDB, as it grows.
 
 use super::OffsetSettings;
+use crate::band::narrow_band::{BandStore, StoredPart};
 use crate::band::{BandSettings, LeafBatch};
 use crate::filter::Block;
 use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, Slab};
 use crate::vdb::{Band, ClosestGrid, SurfaceGrid, VdbError};
 
-/// What is stored of a batch of leaves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Wanted {
-    /// Nothing.
-    Nothing,
-    /// The level set.
-    LevelSet,
-    /// And the closest triangles.
-    WithClosest,
-}
-
-impl Wanted {
-    /// What is stored by these settings.
-    pub(super) fn by(settings: &OffsetSettings) -> Wanted {
+impl StoredPart {
+    /// Returns the part that is stored by these settings.
+    pub(super) fn by(settings: &OffsetSettings) -> StoredPart {
         match (settings.keep_band, settings.keep_closest) {
-            (false, _) => Wanted::Nothing,
-            (true, false) => Wanted::LevelSet,
-            (true, true) => Wanted::WithClosest,
-        }
-    }
-
-    /// A copy of what is stored of a batch.
-    pub(crate) fn of(self, batch: &LeafBatch) -> Option<LeafBatch> {
-        match self {
-            Wanted::Nothing => None,
-            Wanted::LevelSet => Some(batch.level_set()),
-            Wanted::WithClosest => Some(LeafBatch { closest: batch.closest.clone(), ..batch.level_set() }),
+            (false, _) => StoredPart::Nothing,
+            (true, false) => StoredPart::LevelSet,
+            (true, true) => StoredPart::WithClosest,
         }
     }
 }
@@ -53,13 +34,19 @@ impl StoredBand {
         })
     }
 
-    /// What is stored of a batch of leaves.
-    pub(crate) fn wanted(&self) -> Wanted {
-        if self.closest.is_some() { Wanted::WithClosest } else { Wanted::LevelSet }
+    /// The finished band.
+    pub(crate) fn finish(mut self) -> Band {
+        self.surface.prune();
+        Band { surface: self.surface, closest: self.closest }
+    }
+}
+
+impl<E: From<VdbError>> BandStore<E> for StoredBand {
+    fn stored_part(&self) -> StoredPart {
+        if self.closest.is_some() { StoredPart::WithClosest } else { StoredPart::LevelSet }
     }
 
-    /// Adds what [`Wanted`] keeps of the leaves and the inside blocks that `slab` owns.
-    pub(crate) fn insert(&mut self, batch: &LeafBatch, slab: Slab) -> Result<(), VdbError> {
+    fn insert(&mut self, batch: &LeafBatch, slab: Slab) -> Result<(), E> {
         // Runs of leaves that are owned: all of them, unless the batch crosses a plane between slabs.
         let mut start = 0;
         for run in batch.origins.chunk_by(|&a, &b| slab.owns(a) == slab.owns(b)) {
@@ -81,13 +68,7 @@ impl StoredBand {
                 sides.push(block.side as u32);
             });
         }
-        self.surface.fill_inside(&origins, &sides)
-    }
-
-    /// The finished band.
-    pub(crate) fn finish(mut self) -> Band {
-        self.surface.prune();
-        Band { surface: self.surface, closest: self.closest }
+        Ok(self.surface.fill_inside(&origins, &sides)?)
     }
 }
 

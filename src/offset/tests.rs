@@ -2,10 +2,11 @@
 
 use super::*;
 use crate::band::NearTriangles;
+use crate::band::narrow_band::{self, NarrowBand};
 use crate::edge::{EdgeNumbers, EdgeSettings, RootMethod, solve, solve_by};
 use crate::lattice::Slab;
 use crate::mesh::{measure, shapes};
-use crate::offset::narrow_band::NarrowBand;
+use crate::run::Cancelled;
 use crate::verify::tests::audit::audit;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -77,7 +78,7 @@ fn crossings_lie_on_the_offset_surface_by_brute_force() {
     for r in [0.11, -0.07, 0.0] {
         let band_settings = settings(r, 0.08).resolve(&mesh).unwrap();
         let NarrowBand { signs, near, .. } =
-            narrow_band::build(&distance, &band_settings, None, &run(2)).unwrap();
+            narrow_band::build::<Cancelled>(&distance, &band_settings, None, &run(2)).unwrap();
         let numbers = EdgeNumbers::new(&signs).unwrap();
         let lattice = band_settings.lattice;
         let (crossings, statistics) = solve(&distance, lattice, r, &signs, numbers, &near, &run(2)).unwrap();
@@ -112,7 +113,7 @@ fn lists_give_the_roots_of_the_hierarchy() {
         for r in [0.11, -0.07, 0.0] {
             let band_settings = settings(r, voxel).resolve(&mesh).unwrap();
             let NarrowBand { signs, near, .. } =
-                narrow_band::build(&distance, &band_settings, None, &run(2)).unwrap();
+                narrow_band::build::<Cancelled>(&distance, &band_settings, None, &run(2)).unwrap();
             let numbers = EdgeNumbers::new(&signs).unwrap();
             let solve = |lists| {
                 let near = NearTriangles { nodes: near.nodes.clone(), lists };
@@ -135,7 +136,7 @@ fn plain_bisection_finds_the_roots_of_the_hybrid_method() {
     for r in [0.11, -0.07] {
         let band_settings = settings(r, 0.05).resolve(&mesh).unwrap();
         let NarrowBand { signs, near, .. } =
-            narrow_band::build(&distance, &band_settings, None, &run(2)).unwrap();
+            narrow_band::build::<Cancelled>(&distance, &band_settings, None, &run(2)).unwrap();
         let numbers = EdgeNumbers::new(&signs).unwrap();
         let solve = |method| {
             let lattice = band_settings.lattice;

@@ -2,12 +2,12 @@
 
 use super::PaperSettings;
 use super::models::{Model, PaperModel};
+use crate::band::narrow_band::{self, NarrowBand};
 use crate::band::{BandSettings, NearTriangles, SignField};
 use crate::distance::SignedDistance;
 use crate::edge::EdgeNumbers;
 use crate::error::Error;
-use crate::offset::narrow_band::NarrowBand;
-use crate::offset::{Length, OffsetResult, OffsetSettings, VoxelSize, narrow_band, offset};
+use crate::offset::{Length, OffsetResult, OffsetSettings, VoxelSize, offset};
 use crate::run::RunSettings;
 
 /// The settings and the run of a measurement.
@@ -88,7 +88,8 @@ impl Lab<'_> {
         voxel: VoxelSize,
     ) -> Result<Option<Field>, Error> {
         let settings = self.offset_settings(model, fraction, voxel).resolve(&model.mesh)?;
-        let NarrowBand { signs, near, .. } = narrow_band::build(distance, &settings, None, self.run)?;
+        let NarrowBand { signs, near, .. } =
+            narrow_band::build::<Error>(distance, &settings, None, self.run)?;
         let numbers = self.run.install(|| EdgeNumbers::new(&signs))?;
         Ok((!numbers.is_empty()).then_some(Field { settings, signs, numbers, near }))
     }

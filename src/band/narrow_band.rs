@@ -1,16 +1,50 @@
-//! The band as the edges and the contour need it, in plain arrays; and into OpenVDB, where it is to be kept.
+//! The band as the edges and the contour need it, in plain arrays; and into a store, where it is to be kept.
 
-use super::stored_band::{StoredBand, Wanted};
-use crate::band::{
-    self, BOXES_PER_BATCH, BandSettings, InsideBlocks, LeafBatch, LoneNodes, NearTriangles, NodeTriangles,
-    PartTriangles, SignField,
+use super::{
+    BOXES_PER_BATCH, BandSettings, InsideBlocks, LeafBatch, LoneNodes, NearTriangles, NodeTriangles,
+    PartTriangles, SignField, build_kept, join_lone_nodes, leaves_at_jumps,
 };
 use crate::candidates::{BlockLists, CandidateLists};
 use crate::distance::SignedDistance;
-use crate::error::Error;
 use crate::filter::FilterStatistics;
 use crate::lattice::{Ijk, LeafMask, Slab};
-use crate::run::RunSettings;
+use crate::run::{Cancelled, RunSettings};
+
+/// What a store keeps of a batch of leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum StoredPart {
+    /// Nothing.
+    Nothing,
+    /// The level set.
+    LevelSet,
+    /// The level set and the closest triangles.
+    WithClosest,
+}
+
+impl StoredPart {
+    /// Copies what is stored of a batch.
+    fn of(self, batch: &LeafBatch) -> Option<LeafBatch> {
+        match self {
+            StoredPart::Nothing => None,
+            StoredPart::LevelSet => Some(batch.level_set()),
+            StoredPart::WithClosest => {
+                Some(LeafBatch { closest: batch.closest.clone(), ..batch.level_set() })
+            }
+        }
+    }
+}
+
+/// A place outside of the band's own arrays where its leaves are kept, as an OpenVDB tree.
+pub(crate) trait BandStore<E> {
+    /// What the store keeps of each batch.
+    fn stored_part(&self) -> StoredPart;
+
+    /// Adds the leaves and the inside blocks of `batch` that `slab` owns.
+    ///
+    /// # Errors
+    /// Whatever keeps the store from taking them.
+    fn insert(&mut self, batch: &LeafBatch, slab: Slab) -> Result<(), E>;
+}
 
 /// The band around the offset surface.
 pub(crate) struct NarrowBand {
@@ -41,19 +75,19 @@ enum Next {
     Nothing,
 }
 
-/// Builds the band, and adds what the slab owns to `stored`.
-pub(crate) fn build(
+/// Builds the band, and adds what the slab owns to `store`.
+pub(crate) fn build<E: From<Cancelled> + Send>(
     distance: &SignedDistance,
     settings: &BandSettings,
-    stored: Option<&mut StoredBand>,
+    store: Option<&mut (dyn BandStore<E> + Send)>,
     run: &RunSettings,
-) -> Result<NarrowBand, Error> {
-    let (parts, counts) = Parts::collect(distance, settings, Next::Contour, stored, run)?;
+) -> Result<NarrowBand, E> {
+    let (parts, counts) = Parts::collect(distance, settings, Next::Contour, store, run)?;
     run.install(|| {
-        let ring = |nodes: &[Ijk]| Ok::<_, Error>(parts.blocks.contain(nodes));
+        let ring = |nodes: &[Ijk]| Ok::<_, E>(parts.blocks.contain(nodes));
         let mut signs = SignField::new(&parts.origins, &parts.inside, settings.slab, ring)?;
         let BandSettings { lattice, r, slab, .. } = *settings;
-        let lone_nodes = band::join_lone_nodes(&mut signs, distance, r, lattice, slab);
+        let lone_nodes = join_lone_nodes(&mut signs, distance, r, lattice, slab);
         let counts = BandCounts { lone_nodes, ..counts };
         let nodes = NodeTriangles::new(&signs, &parts.origins, parts.closest);
         let lists = CandidateLists::new(settings.lattice, parts.lists);
@@ -61,14 +95,14 @@ pub(crate) fn build(
     })
 }
 
-/// Builds the band into `stored` only.
-pub(crate) fn store(
+/// Builds the band into `store` only.
+pub(crate) fn store<E: From<Cancelled> + Send>(
     distance: &SignedDistance,
     settings: &BandSettings,
-    stored: &mut StoredBand,
+    store: &mut (dyn BandStore<E> + Send),
     run: &RunSettings,
-) -> Result<BandCounts, Error> {
-    Ok(Parts::collect(distance, settings, Next::Nothing, Some(stored), run)?.1)
+) -> Result<BandCounts, E> {
+    Ok(Parts::collect(distance, settings, Next::Nothing, Some(store), run)?.1)
 }
 
 /// What is kept of a batch of leaves.
@@ -79,12 +113,12 @@ struct Kept {
     owned: [u64; 2],
     /// For edges and a contour: which nodes are inside, their closest triangles, and those near the edges.
     near: Option<(Vec<LeafMask>, PartTriangles, BlockLists)>,
-    /// For OpenVDB.
+    /// For the store.
     stored: Option<LeafBatch>,
 }
 
 impl Kept {
-    fn new(batch: &LeafBatch, slab: Slab, next: Next, wanted: Wanted) -> Kept {
+    fn new(batch: &LeafBatch, slab: Slab, next: Next, part: StoredPart) -> Kept {
         let own = batch.origins.iter().zip(&batch.active).filter(|leaf| slab.owns(*leaf.0));
         let owned = own.fold([0; 2], |[leaves, nodes], (_, active)| {
             [leaves + 1, nodes + active.iter().map(|word| u64::from(word.count_ones())).sum::<u64>()]
@@ -95,7 +129,7 @@ impl Kept {
             inside_blocks: batch.inside_blocks.clone(),
             owned,
             near: (next == Next::Contour).then(near),
-            stored: wanted.of(batch),
+            stored: part.of(batch),
         }
     }
 }
@@ -111,22 +145,22 @@ struct Parts {
 }
 
 impl Parts {
-    fn collect(
+    fn collect<E: From<Cancelled> + Send>(
         distance: &SignedDistance,
         settings: &BandSettings,
         next: Next,
-        mut stored: Option<&mut StoredBand>,
+        mut store: Option<&mut (dyn BandStore<E> + Send)>,
         run: &RunSettings,
-    ) -> Result<(Parts, BandCounts), Error> {
+    ) -> Result<(Parts, BandCounts), E> {
         let slab = settings.slab;
         let mut parts = Parts::default();
         let mut counts = BandCounts::default();
         let mut inside_blocks = Vec::new();
-        let wanted = stored.as_ref().map_or(Wanted::Nothing, |stored| stored.wanted());
-        let keep = |batch: &LeafBatch| Kept::new(batch, slab, next, wanted);
-        let mut take = |kept: Kept, parts: &mut Parts| -> Result<(), Error> {
-            if let (Some(stored), Some(batch)) = (&mut stored, &kept.stored) {
-                stored.insert(batch, slab)?;
+        let part = store.as_ref().map_or(StoredPart::Nothing, |store| store.stored_part());
+        let keep = |batch: &LeafBatch| Kept::new(batch, slab, next, part);
+        let mut take = |kept: Kept, parts: &mut Parts| -> Result<(), E> {
+            if let (Some(store), Some(batch)) = (&mut store, &kept.stored) {
+                store.insert(batch, slab)?;
             }
             counts.leaves += kept.owned[0];
             counts.active_voxels += kept.owned[1];
@@ -134,15 +168,15 @@ impl Parts {
             Ok(())
         };
         // What only stays here need not be handed on in between.
-        let at_a_time = if wanted == Wanted::Nothing { usize::MAX } else { BOXES_PER_BATCH };
-        let filter = band::build_kept(distance, settings, at_a_time, run, keep, |kept| {
+        let at_a_time = if part == StoredPart::Nothing { usize::MAX } else { BOXES_PER_BATCH };
+        let filter = build_kept(distance, settings, at_a_time, run, keep, |kept| {
             inside_blocks.extend_from_slice(&kept.inside_blocks);
             take(kept, &mut parts)
         })?;
         let jumps = run.install(|| {
             parts.blocks = InsideBlocks::new(&inside_blocks);
             let is_inside = |node| parts.blocks.contains(node);
-            band::leaves_at_jumps(&parts.origins, &inside_blocks, settings, is_inside)
+            leaves_at_jumps(&parts.origins, &inside_blocks, settings, is_inside)
         });
         if !jumps.is_empty() {
             take(keep(&jumps), &mut parts)?;
