@@ -6,6 +6,7 @@
 #   make test                       all tests
 #   make test-full                  also the long ones, in release
 #   make bench                      each stage, and the whole beside OpenVDB's tools and MeshLib
+#   make bench-report               measures all, and writes docs/benchmarks.md; QUICK=1: ten minutes
 #   make instructions OLD=a NEW=b   two commits by instruction counts
 #   make lint doc setup
 
@@ -23,11 +24,13 @@ ARGS ?=
 BENCH_MODEL ?= anchor
 BENCH_RESOLUTION ?= 256
 PYTHON ?= python3
+# What `make bench-report` measures.
+PROGRAM ?= target/release/exocarp
 # What `make instructions` compares.
 OLD ?= HEAD~1
 NEW ?= HEAD
 
-.PHONY: setup build demo test test-full lint bench instructions doc clean
+.PHONY: setup build demo test test-full lint bench bench-report instructions doc clean
 
 setup:
 	@bash scripts/setup.sh
@@ -55,6 +58,10 @@ bench: build
 	target/release/exocarp model '$(BENCH_MODEL)' -o out/bench.ply
 	target/release/exocarp compare out/bench.ply -d 2% --resolution $(BENCH_RESOLUTION) --runs 5 --once-above 25 \
 	    --python '$(PYTHON)'
+
+# Writes docs/benchmarks.md and docs/compare from one run; MeshLib if PYTHON can import it.
+bench-report: build
+	python3 scripts/bench_report.py $(if $(QUICK),--quick) --program '$(PROGRAM)' --python '$(PYTHON)'
 
 # Instructions of two commits on a small case: make instructions OLD=HEAD~1 NEW=HEAD
 instructions:
