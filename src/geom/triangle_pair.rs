@@ -1,6 +1,11 @@
 //! Whether two triangles have more in common than the vertices and edges they share: exactly, by the signs of
 //! determinants. Only the point that is given back is rounded.
 
+#[cfg(test)]
+pub(crate) mod oracle;
+#[cfg(test)]
+mod tests;
+
 use super::predicates::{orient2d, orient3d, project, projection_axis};
 
 type Point = [f64; 3];
