@@ -214,7 +214,9 @@ fn nearly_degenerate_pairs() -> impl Strategy<Value = Pair> {
     let nudges = || prop::array::uniform3(prop::array::uniform3(-1..=1i8));
     (pairs_on_a_grid(), nudges(), nudges(), 0.1..1.0f64).prop_map(|(pair, na, nb, scale)| {
         let moved = |p: Corners, n: [[i8; 3]; 3]| -> Corners {
-            std::array::from_fn(|k| std::array::from_fn(|axis| nudged(scale * (p[k][axis] + 3.0), n[k][axis])))
+            std::array::from_fn(|k| {
+                std::array::from_fn(|axis| nudged(scale * (p[k][axis] + 3.0), n[k][axis]))
+            })
         };
         let (pa, mut pb) = (moved(pair.pa, na), moved(pair.pb, nb));
         for (p, v) in pb.iter_mut().zip(pair.vb) {

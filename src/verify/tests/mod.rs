@@ -3,4 +3,5 @@
 pub(crate) mod audit;
 mod defects;
 mod figures;
+mod oracle;
 mod pairs;
