@@ -2,6 +2,7 @@
 
 use super::LeafBatch;
 use super::leaf::Leaf;
+use super::policy::{LeafPolicy, SignedBand};
 use crate::candidates::Narrowing;
 use crate::distance::SignedDistance;
 use crate::filter::{Block, BoxSide, Filter, FilterSettings, FilterStatistics, Switch, Verdict};
@@ -82,7 +83,7 @@ pub fn build_kept<T: Send, E: From<Cancelled> + Send>(
     sink: impl FnMut(T) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
     let plan = Plan::new(distance, settings, &FilterSettings::default());
-    build_with(plan, settings, None, at_a_time, run, keep, sink)
+    build_with(plan, settings, SignedBand, at_a_time, run, keep, sink)
 }
 
 /// The same as [`build`] with some filters off, or other bounding boxes. Leaves and their values are the
@@ -101,20 +102,20 @@ pub fn build_filtered<E: From<Cancelled> + Send>(
     sink: impl FnMut(LeafBatch) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
     let plan = Plan::new(distance, settings, filters);
-    build_with(plan, settings, None, BOXES_PER_BATCH, run, LeafBatch::clone, sink)
+    build_with(plan, settings, SignedBand, BOXES_PER_BATCH, run, LeafBatch::clone, sink)
 }
 
 fn build_with<T: Send, E: From<Cancelled> + Send>(
     plan: Plan<'_>,
     settings: &BandSettings,
-    below: Option<Below<'_>>,
+    policy: impl LeafPolicy,
     at_a_time: usize,
     run: &RunSettings,
     keep: impl Fn(&LeafBatch) -> T + Sync,
     mut sink: impl FnMut(T) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
     let Plan { filter, boxes, mut statistics } = plan;
-    let worker = Worker { filter, settings: *settings, below };
+    let worker = Worker { filter, settings: *settings, policy };
     let scratch = Mutex::new(Vec::new());
     let phase = run.phase(Phase::Band, boxes.len() as u64);
     run.install(|| {
@@ -137,35 +138,23 @@ fn build_with<T: Send, E: From<Cancelled> + Send>(
     })
 }
 
-/// What is wanted of the band around an open mesh, for a solid on its negative side.
-#[derive(Clone, Copy, Debug)]
-pub struct Below<'a> {
-    /// Nodes more than this over the planes of all triangles that can be closest to them are left out, in model units:
-    /// whatever feature of these triangles they are closest to, they are on its positive side.
-    pub above: f64,
-    /// Of nodes that have a distance between these and are under the planes of all triangles that can be closest to them, none
-    /// of which is at the boundary, only that is wanted.
-    pub inside: [f64; 2],
-    /// Per triangle whether a vertex of it is on the boundary.
-    pub at_boundary: &'a [bool],
-}
-
-/// The band around an open mesh, `settings.r` being zero. Distances go without signs, since those of an open mesh jump where
-/// there is no surface; `values` stay empty, and `inside` and `inside_blocks` hold the nodes that are known to be inside.
-/// Every block with another node in the band has its list.
+/// Builds the band by a policy of its own, all boxes in one go. For a policy without signs,
+/// `settings.r` is zero: distances of an open mesh jump where there is no surface.
+///
+/// `inside` and `inside_blocks` of the batches hold the nodes that the policy knows to be inside.
 ///
 /// # Errors
 /// Cancellation, or what `sink` returns.
-pub fn build_below<E: From<Cancelled> + Send>(
+pub fn build_with_policy<E: From<Cancelled> + Send>(
     distance: &SignedDistance,
     settings: &BandSettings,
-    below: Below<'_>,
+    policy: impl LeafPolicy,
     run: &RunSettings,
     sink: impl FnMut(LeafBatch) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
     let plan = Plan::new(distance, settings, &FilterSettings::default());
-    // All of it is kept by who asks.
-    build_with(plan, settings, Some(below), usize::MAX, run, LeafBatch::clone, sink)
+    // The caller keeps all of it.
+    build_with(plan, settings, policy, usize::MAX, run, LeafBatch::clone, sink)
 }
 
 /// The work of a band: which boxes to go through with which filters.
@@ -228,11 +217,10 @@ fn bounding_boxes([lo, hi]: [Ijk; 2], side: BoxSide) -> Vec<Block> {
 }
 
 /// Fills leaves.
-pub(super) struct Worker<'a> {
+pub(super) struct Worker<'a, P> {
     pub(super) filter: Filter<'a>,
     pub(super) settings: BandSettings,
-    /// Where the mesh is open, what is wanted.
-    pub(super) below: Option<Below<'a>>,
+    pub(super) policy: P,
 }
 
 /// The working memory of a thread: what was used for one box is used for the next.
@@ -242,7 +230,7 @@ struct Scratch {
     batch: LeafBatch,
 }
 
-impl Worker<'_> {
+impl<P: LeafPolicy> Worker<'_, P> {
     fn fill<T: Send>(
         &self,
         boxes: &[Block],
@@ -322,9 +310,9 @@ impl Worker<'_> {
         statistics
     }
 
-    /// Adds a block on the negative side, beyond the band. Where the mesh is open, that says nothing.
+    /// Adds a block on the negative side, beyond the band. Without signs, that says nothing.
     fn push_inside(&self, block: Block, batch: &mut LeafBatch) {
-        if self.below.is_none() {
+        if P::IS_SIGNED {
             batch.inside_blocks.push((block.origin, block.side));
         }
     }

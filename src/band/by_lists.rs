@@ -3,6 +3,7 @@
 use super::LeafBatch;
 use super::build::Worker;
 use super::leaf::{Fate, Leaf, blocks_with_crossed_cells};
+use super::policy::{BlockCandidates, BlockState, LeafPolicy};
 use crate::candidates::{BlockLists, EightPoints, Narrowing};
 use crate::filter::{Block, FilterStatistics};
 use crate::lattice::{Ijk, LEAF_DIM};
@@ -24,15 +25,7 @@ struct Work<'a> {
     leaf: Leaf,
 }
 
-/// What is known of nodes without a look at each.
-enum Known {
-    /// They are too far over the mesh to matter.
-    Above,
-    /// They are inside.
-    Inside,
-}
-
-impl Worker<'_> {
+impl<P: LeafPolicy> Worker<'_, P> {
     /// Evaluates the leaf at `origin`, whose centre is at the signed distance `distance` with the closest triangle
     /// `triangle`, and appends it with the lists of its blocks.
     pub(super) fn leaf_by_lists(
@@ -47,16 +40,16 @@ impl Worker<'_> {
         let block = Block { origin, side: LEAF_DIM };
         let ssvh = self.filter.distance.ssvh();
         let q = ssvh.triangle(triangle).closest(block.centre(self.filter.lattice)).point;
-        // The solid below an open mesh is decided by lists.
-        let most = if self.below.is_some() { usize::MAX } else { MOST };
+        // A policy without signs decides by lists.
+        let most = if P::IS_SIGNED { MOST } else { usize::MAX };
         if !narrowing.start(ssvh, self.filter.lattice, block, q, most) {
             self.leaf_by_queries(origin, triangle, batch, statistics);
             return;
         }
         statistics.lists[0] += narrowing.count(0) as u64;
-        match self.known_below(0, [0.0; 3], block, [distance.abs(); 2], narrowing) {
-            Some(Known::Above) => return,
-            Some(Known::Inside) => {
+        match self.state(0, [0.0; 3], block, [distance.abs(); 2], narrowing) {
+            Some(BlockState::Unwanted) => return,
+            Some(BlockState::Inside) => {
                 batch.inside_blocks.push((origin, LEAF_DIM));
                 return;
             }
@@ -65,18 +58,15 @@ impl Worker<'_> {
         batch.lists.begin_leaf();
         let mut work = Work { narrowing, lists: &mut batch.lists, statistics, leaf: Leaf::new() };
         // Without signs, all distances are on one side.
-        let side = if self.below.is_some() { Some(1.0) } else { self.side_around(block, distance) };
+        let side = if P::IS_SIGNED { self.side_around(block, distance) } else { Some(1.0) };
         self.halves(0, block, side, &mut work);
         let leaf = work.leaf;
-        let fate = if self.below.is_some() {
-            leaf.finish_unsigned(origin, batch)
-        } else {
-            leaf.finish(origin, batch)
-        };
+        let fate =
+            if P::IS_SIGNED { leaf.finish(origin, batch) } else { leaf.finish_unsigned(origin, batch) };
         match fate {
             Fate::Dropped => batch.lists.drop_leaf(),
-            // Below an open mesh, shape processing asks anywhere.
-            Fate::Kept if self.below.is_some() => {}
+            // Without signs nobody knows which cells the surface crosses.
+            Fate::Kept if !P::IS_SIGNED => {}
             Fate::Kept => {
                 if let (Some(inside), Some(active)) = (batch.inside.last(), batch.active.last()) {
                     batch.lists.retain_blocks(blocks_with_crossed_cells(inside, active));
@@ -125,9 +115,9 @@ impl Worker<'_> {
             work.narrowing.narrow(depth, n);
             work.statistics.lists[depth + 1] += work.narrowing.count(depth + 1) as u64;
             let range = [distance - error, distance + error];
-            match self.known_below(depth + 1, centres.map(|c| c[n]), half, range, work.narrowing) {
-                Some(Known::Above) => continue,
-                Some(Known::Inside) => {
+            match self.state(depth + 1, centres.map(|c| c[n]), half, range, work.narrowing) {
+                Some(BlockState::Unwanted) => continue,
+                Some(BlockState::Inside) => {
                     work.leaf.fill(half, -self.settings.background());
                     continue;
                 }
@@ -139,35 +129,25 @@ impl Worker<'_> {
             }
             let valid = self.nodes_by_list(n, &centres, half, side, work);
             // An edge that the surface crosses has valid ends; other blocks need no list.
-            if valid > 0 || self.below.is_some() {
+            if valid > 0 || !P::IS_SIGNED {
                 let (positions, bounds) = work.narrowing.bounded();
                 work.lists.push(half.origin, positions, bounds);
             }
         }
     }
 
-    /// What is known of all nodes of a block by the list of `depth`, which is the block's, where only what is below the mesh is
-    /// wanted. `centre` is the block's centre relative to the leaf's, in voxels; the distance there is in `range`.
-    fn known_below(
+    /// Asks the policy about all nodes of a block, whose list is that of `depth`. `centre` is the block's
+    /// centre relative to the leaf's, in voxels; the distance there is in `distance`, in model units.
+    fn state(
         &self,
         depth: usize,
         centre: [f32; 3],
         block: Block,
-        range: [f64; 2],
+        distance: [f64; 2],
         narrowing: &Narrowing,
-    ) -> Option<Known> {
-        let below = self.below.as_ref()?;
-        let lattice = self.filter.lattice;
-        if narrowing.is_above(depth, centre, block.side, (below.above / lattice.voxel) as f32) {
-            return Some(Known::Above);
-        }
-        let radius = block.radius(lattice);
-        if range[0] - radius <= below.inside[0] || range[1] + radius >= below.inside[1] {
-            return None;
-        }
-        let ssvh = self.filter.distance.ssvh();
-        let at_boundary = |position: u32| below.at_boundary[ssvh.id_at(position) as usize];
-        narrowing.is_below(depth, centre, block.side, at_boundary).then_some(Known::Inside)
+    ) -> Option<BlockState> {
+        let (lattice, ssvh) = (self.filter.lattice, self.filter.distance.ssvh());
+        self.policy.decide(&BlockCandidates { narrowing, depth, block, centre, lattice, ssvh, distance })
     }
 
     /// Evaluates the eight nodes of a block of side 2, which was narrowed to last as half number `n` with one of `centres`,

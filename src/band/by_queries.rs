@@ -4,11 +4,12 @@
 use super::LeafBatch;
 use super::build::Worker;
 use super::leaf::{Fate, Leaf};
+use super::policy::LeafPolicy;
 use crate::filter::{Block, FilterStatistics, Verdict};
 use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE};
 use glam::DVec3;
 
-impl Worker<'_> {
+impl<P: LeafPolicy> Worker<'_, P> {
     /// Evaluates the leaf at `origin` through the octree filter and appends it.
     pub(super) fn leaf_by_queries(
         &self,

@@ -12,13 +12,14 @@ mod leaves;
 mod lone_nodes;
 pub(crate) mod narrow_band;
 mod node_triangles;
+mod policy;
 mod ring;
 mod signs;
 #[cfg(test)]
 mod tests;
 
 pub use build::{
-    BOXES_PER_BATCH, BandSettings, Below, build, build_below, build_filtered, build_kept, grid_nodes,
+    BOXES_PER_BATCH, BandSettings, build, build_filtered, build_kept, build_with_policy, grid_nodes,
 };
 pub use count::count_queries;
 pub use inside::InsideBlocks;
@@ -27,4 +28,5 @@ pub use layers::{Layers, count_layers};
 pub use leaves::{LeafBatch, inside_mask};
 pub use lone_nodes::{LoneNodes, join_lone_nodes};
 pub use node_triangles::{LeafTriangles, NearTriangles, NodeTriangles, PartTriangles};
+pub use policy::{BlockCandidates, BlockState, LeafPolicy, SignedBand};
 pub use signs::{LeafId, SignField};

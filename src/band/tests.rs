@@ -3,11 +3,11 @@ use crate::candidates::CandidateLists;
 use crate::distance::SignedDistance;
 use crate::filter::{BoxSide, FilterSettings, Switch};
 use crate::geom::aabb::Aabb;
-use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, Lattice, Slab};
+use crate::lattice::{Ijk, LEAF_SIZE, Lattice, Slab};
 use crate::mesh::{Topology, TriMesh};
 use crate::run::{Cancelled, RunSettings};
 use glam::DVec3;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 /// An octahedron of circumradius 1 around a centre off the lattice.
 fn octahedron() -> TriMesh {
@@ -285,73 +285,4 @@ fn each_filter_saves_distance_computations() {
     };
     let brute = count_queries(&distance, &settings, &none, &run).unwrap();
     assert!(brute.node_queries >= brute.nodes_total && count(Off, Off, 4) < brute.node_queries);
-}
-
-#[test]
-fn below_an_open_mesh_nodes_are_known_or_not_wanted() {
-    let mesh = (crate::mesh::shapes::by_name("wave").unwrap().make)(24);
-    let topology = Topology::new(&mesh);
-    let distance = SignedDistance::new(&mesh, &topology);
-    let lattice = Lattice { voxel: 0.05 };
-    let settings = BandSettings { lattice, r: 0.0, half_width: 6.0, slab: Slab::WHOLE };
-    // A vertex has more neighbours than triangles where it is on the boundary.
-    let is_on_boundary = |v: u32| {
-        let around = topology.around_vertex(v);
-        let neighbours: HashSet<u32> =
-            around.iter().flat_map(|&t| mesh.triangles[t as usize]).filter(|&w| w != v).collect();
-        neighbours.len() > around.len()
-    };
-    let at_boundary: Vec<bool> =
-        mesh.triangles.iter().map(|t| t.iter().any(|&v| is_on_boundary(v))).collect();
-    assert!(at_boundary.iter().any(|b| *b) && at_boundary.iter().any(|b| !b));
-    let (above, inside) = (0.02, [0.08, 0.22]);
-    let run = RunSettings::with_threads(2).unwrap();
-    // What is known of each node: its closest triangle, or that it is inside.
-    let mut closest: HashMap<Ijk, u32> = HashMap::new();
-    let mut known: HashSet<Ijk> = HashSet::new();
-    build_below(&distance, &settings, Below { above, inside, at_boundary: &at_boundary }, &run, |batch| {
-        assert!(batch.values.is_empty());
-        for (n, &origin) in batch.origins.iter().enumerate() {
-            for number in 0..LEAF_SIZE {
-                let node = Ijk::in_leaf(origin, number);
-                if let Ok(triangle) = u32::try_from(batch.closest[n * LEAF_SIZE + number]) {
-                    closest.insert(node, triangle);
-                }
-                if batch.inside[n][number >> 6] >> (number & 63) & 1 == 1 {
-                    known.insert(node);
-                }
-            }
-        }
-        for &(origin, side) in &batch.inside_blocks {
-            assert_eq!(side, LEAF_DIM);
-            known.extend((0..LEAF_SIZE).map(|number| Ijk::in_leaf(origin, number)));
-        }
-        Ok::<_, Cancelled>(())
-    })
-    .unwrap();
-    let (mut evaluated, mut left_out) = (0, 0);
-    let bounds = Aabb::around(mesh.vertices.iter().map(|&v| DVec3::from(v)));
-    let [lo, hi] = grid_nodes(bounds, &settings);
-    for x in lo.0[0]..=hi.0[0] {
-        for y in lo.0[1]..=hi.0[1] {
-            for z in lo.0[2]..=hi.0[2] {
-                let node = Ijk::new(x, y, z);
-                let sample = distance.at(DVec3::from(lattice.world_from_index(node)), 0);
-                let away = sample.distance.abs();
-                if known.contains(&node) {
-                    assert!(sample.distance < 0.0, "{node:?} {sample:?}");
-                    assert!((inside[0]..inside[1]).contains(&away), "{node:?} {sample:?}");
-                    assert!(!at_boundary[sample.triangle as usize], "{node:?} {sample:?}");
-                } else if let Some(&triangle) = closest.get(&node) {
-                    assert_eq!(triangle, sample.triangle, "{node:?}");
-                    evaluated += 1;
-                } else if away < 0.99 * f64::from(settings.background()) {
-                    assert!(sample.distance > above, "{node:?} {sample:?} is wanted and unknown");
-                    left_out += 1;
-                }
-            }
-        }
-    }
-    let known = known.len();
-    assert!(evaluated > 1_000 && left_out > 1_000 && known > 1_000, "{evaluated} {left_out} {known}");
 }

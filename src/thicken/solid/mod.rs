@@ -4,5 +4,6 @@ pub(super) mod crossings;
 mod dilate;
 pub(super) mod edge_search;
 pub(super) mod nodes;
+mod one_sided;
 pub(super) mod region;
 pub(super) mod vertex_pillars;

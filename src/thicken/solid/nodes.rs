@@ -1,7 +1,8 @@
 //! Which nodes are in the solid (\[WC13\] section 3): those of the band around S whose closest triangle says so.
 
+use super::one_sided::OneSided;
 use super::region::{Place, Solid};
-use crate::band::{BandSettings, Below, NodeTriangles, PartTriangles, SignField, build_below};
+use crate::band::{BandSettings, NodeTriangles, PartTriangles, SignField, build_with_policy};
 use crate::candidates::CandidateLists;
 use crate::distance::SignedDistance;
 use crate::error::Error;
@@ -46,11 +47,11 @@ impl Nodes {
     ) -> Result<(Nodes, CandidateLists), Error> {
         let settings = BandSettings { lattice, r: 0.0, half_width: reach / lattice.voxel, slab: Slab::WHOLE };
         let at_boundary = boundary.triangles(distance.mesh());
-        let below = Below { above, inside, at_boundary: &at_boundary };
+        let policy = OneSided { max_height: above, sure_inside: inside, at_boundary: &at_boundary };
         let mut nodes =
             Nodes { origins: Vec::new(), closest: Vec::new(), inside: Vec::new(), whole: Vec::new() };
         let mut lists = Vec::new();
-        build_below(distance, &settings, below, run, |batch| {
+        build_with_policy(distance, &settings, policy, run, |batch| {
             nodes.origins.extend_from_slice(&batch.origins);
             nodes.inside.extend_from_slice(&batch.inside);
             nodes.whole.extend(batch.inside_blocks.iter().map(|&(origin, _)| origin));
