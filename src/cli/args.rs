@@ -1,7 +1,7 @@
 //! The arguments, their units and their help.
 
 use super::examples;
-use super::numbers::{bytes, length, resolution, threads, tile, tolerance, voxel};
+use super::format::{bytes, length, resolution, threads, tile, tolerance, voxel};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use exocarp::compare::Method;
 use exocarp::offset::{Length, SignMode, Tolerance};

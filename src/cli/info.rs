@@ -3,7 +3,7 @@
 use super::args::InfoArguments;
 use super::exit::Failure;
 use super::files::{check_input, load_mesh};
-use super::numbers::{grouped, short};
+use super::format::{grouped, short};
 use super::session::{Session, print};
 use super::statistics::MeshFacts;
 use exocarp::mesh::{CleanReport, Defects, Topology, measure};

@@ -3,7 +3,7 @@
 use super::args::MergeArguments;
 use super::exit::Failure;
 use super::files::{check_input, is_vdb};
-use super::numbers::{counted, grouped};
+use super::format::{counted, grouped};
 use super::outputs;
 use super::session::Session;
 use exocarp::error::Error;

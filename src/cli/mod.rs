@@ -9,15 +9,15 @@ mod examples;
 mod exit;
 mod files;
 mod info;
-mod making;
+mod strategy;
 mod merge;
 mod model;
-mod numbers;
+mod format;
 mod offset;
 mod outputs;
 mod paper;
 mod progress;
-mod resources;
+mod memory;
 mod session;
 mod statistics;
 mod thicken;
@@ -34,8 +34,8 @@ use std::time::Instant;
 
 /// Parses the arguments, runs the command, and turns what comes of it into an exit code.
 pub fn main() -> ExitCode {
-    resources::return_large_blocks();
-    resources::let_large_writes_fail();
+    memory::return_large_blocks();
+    memory::let_large_writes_fail();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => return usage(&error),

@@ -3,7 +3,7 @@
 use super::args::ModelArguments;
 use super::exit::Failure;
 use super::files::{check_mesh_output, coordinates, save_mesh};
-use super::numbers::{counted, short};
+use super::format::{counted, short};
 use super::outputs;
 use super::session::{Session, print};
 use exocarp::mesh::shapes::{self, Shape};

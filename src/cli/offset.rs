@@ -6,12 +6,12 @@ use super::files::{
     Loaded, STORED_HALF_WIDTH, check_mesh_output, check_vdb_output, load_mesh, precision, save_json,
     save_vdb, vdb_options,
 };
-use super::making::{check_pieces, identity, make};
-use super::numbers::{counted, grouped, short};
+use super::format::{counted, grouped, short};
+use super::memory::peak_rss;
 use super::outputs;
-use super::resources::peak_rss;
 use super::session::{Session, Verbosity};
 use super::statistics::{MeshFacts, Phases, RunFile};
+use super::strategy::{check_pieces, identity, make};
 use exocarp::mesh::{CleanReport, Topology};
 use exocarp::offset::{EngineTimes, OffsetResult, OffsetSettings, OffsetStatistics, VoxelSize};
 use exocarp::run::{Bytes, Phase};

@@ -2,7 +2,7 @@
 //!
 //! Its field names are a contract with those who read it. The engine's parts come as it serialises them.
 
-use super::resources::peak_rss;
+use super::memory::peak_rss;
 use super::session::Session;
 use exocarp::mesh::{Topology, TriMesh};
 use serde::Serialize;

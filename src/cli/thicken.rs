@@ -6,7 +6,7 @@ use super::files::{
     STORED_HALF_WIDTH, check_mesh_output, check_vdb_output, coordinates, load_mesh, precision, save_json,
     save_mesh, save_vdb, vdb_options,
 };
-use super::numbers::{counted, grouped, short};
+use super::format::{counted, grouped, short};
 use super::outputs;
 use super::session::{Session, Verbosity};
 use super::statistics::{MeshFacts, Phases, RunFile};

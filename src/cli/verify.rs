@@ -3,7 +3,7 @@
 use super::args::{Sign, VerifyArguments};
 use super::exit::{Exit, Failure};
 use super::files::{load_as_it_stands, load_mesh, save_json};
-use super::numbers::{grouped, short};
+use super::format::{grouped, short};
 use super::outputs;
 use super::session::Session;
 use exocarp::mesh::{Topology, TriMesh};

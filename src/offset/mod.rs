@@ -9,27 +9,27 @@
 //! oriented and free of self-intersections, on the coordinates of the chosen [`Precision`]; the same bytes
 //! for every number of threads.
 
-mod in_slabs;
+mod stream;
 mod memory;
 mod job;
-mod on_slab;
-mod resolving;
-mod slabs;
+mod stages;
+mod voxel_refinement;
+mod partition;
 mod settings;
 mod statistics;
 mod stored_band;
 mod surface;
 #[cfg(test)]
 mod tests;
-mod unsuitable;
+mod error;
 
 pub use crate::contour::Precision;
-pub use in_slabs::{Cut, PieceSink, offset_in_slabs};
+pub use error::{EmptyResult, InputError};
 pub use job::job;
 pub use memory::{MemoryError, available_memory};
 pub use settings::{Length, OffsetSettings, SettingsError, SignMode, Tolerance, VoxelSize};
 pub use statistics::{EngineTimes, OffsetStatistics, VdbStatistics};
-pub use unsuitable::{EmptyResult, InputError};
+pub use stream::{Cut, PieceSink, offset_in_slabs};
 
 use crate::band::BandSettings;
 use crate::band::narrow_band::{self, StoredPart};
@@ -40,10 +40,10 @@ use crate::mesh::{Topology, TriMesh};
 use crate::run::{Phase, RunSettings};
 use crate::unseen::Unseen;
 use crate::vdb::Band;
-use on_slab::on_slab;
-use resolving::until_seen;
+use stages::on_slab;
 use std::time::Instant;
 use stored_band::StoredBand;
+use voxel_refinement::until_seen;
 
 /// What [`offset`] returns.
 #[derive(Debug)]
@@ -129,9 +129,9 @@ impl Prepared<'_> {
         run: &RunSettings,
         work: impl FnOnce(&Prepared<'_>) -> Result<T, Error>,
     ) -> Result<T, Error> {
-        unsuitable::check_mesh(mesh)?;
+        error::check_mesh(mesh)?;
         let topology = run.install(|| Topology::new(mesh));
-        unsuitable::check_input(mesh, &topology, settings.sign)?;
+        error::check_input(mesh, &topology, settings.sign)?;
         let band_settings = settings.resolve(mesh)?;
         let started = Instant::now();
         let distance = {

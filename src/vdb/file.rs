@@ -6,8 +6,8 @@
 
 use super::VdbError;
 use super::bridge::ffi;
+use super::content_id;
 use super::grid::{Band, CLOSEST, CREATOR, ClosestGrid, SurfaceGrid};
-use super::stamp;
 use cxx::UniquePtr;
 use std::fs::File;
 use std::io::Read;
@@ -109,7 +109,7 @@ pub(super) fn write_grids(
         Compression::None => ffi::Codec::None,
     };
     ffi::write_file(bytes(path), surface, closest, codec, metadata).map_err(|e| VdbError::write(path, e))?;
-    stamp::stamp(path).map_err(|e| VdbError::write(path, e))
+    content_id::stamp(path).map_err(|e| VdbError::write(path, e))
 }
 
 /// Opens the level set `name` of a file; without a name the grid `surface`, or else the only float grid.
@@ -194,7 +194,7 @@ pub(super) fn contents(path: &Path, depth: ffi::Depth) -> Result<ffi::Contents, 
     if first != MAGIC {
         return Err(VdbError::NotVdb { path: path.into() });
     }
-    if !stamp::is_intact(path).map_err(|e| VdbError::read(path, e))? {
+    if !content_id::is_intact(path).map_err(|e| VdbError::read(path, e))? {
         return Err(VdbError::read(path, "the file is damaged or incomplete"));
     }
     ffi::read_contents(bytes(path), depth).map_err(|e| VdbError::read(path, e))

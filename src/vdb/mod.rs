@@ -26,8 +26,8 @@ mod file;
 mod grid;
 mod info;
 mod leaves;
-mod peer;
-mod stamp;
+mod openvdb_tools;
+mod content_id;
 mod tiles;
 
 pub use error::VdbError;
@@ -36,5 +36,5 @@ pub use file::{
 };
 pub use grid::{Band, ClosestGrid, SurfaceGrid};
 pub use info::{FileInfo, GridInfo, info};
-pub use peer::{BandWidths, Polygons, Scheme, VdbLevelSet};
+pub use openvdb_tools::{BandWidths, Polygons, Scheme, VdbLevelSet};
 pub use tiles::{merge_bands, write_tile};

@@ -1,10 +1,10 @@
 //! An offset slab by slab: in less memory than the whole takes, or one share of it on a machine of its own.
 
+use super::error::EmptyResult;
 use super::memory::{MemoryError, check_countable, leaves_within};
-use super::on_slab::on_slab;
-use super::resolving::until_seen;
+use super::stages::on_slab;
 use super::stored_band::StoredBand;
-use super::unsuitable::EmptyResult;
+use super::voxel_refinement::until_seen;
 use super::{OffsetResult, OffsetSettings, OffsetStatistics, Prepared};
 use crate::band::{BandSettings, count_layers};
 use crate::contour::{SlabContour, halo};
@@ -105,12 +105,12 @@ fn cut_slabs(prepared: &Prepared<'_>, settings: &BandSettings, cut: Cut) -> Resu
     let halo = halo(&prepared.settings.contour(settings.lattice));
     let layers = count_layers(distance, settings, run)?;
     Ok(match cut {
-        Cut::Tile { number, of } => vec![super::slabs::share(&layers, halo, number, of)],
+        Cut::Tile { number, of } => vec![super::partition::share(&layers, halo, number, of)],
         // Nothing to see there, and that is said.
         Cut::Memory(_) if layers.leaves.is_empty() => vec![Slab::WHOLE],
         Cut::Memory(bytes) => {
             let most = leaves_within(distance.mesh(), bytes);
-            super::slabs::within(&layers, halo, most)
+            super::partition::within(&layers, halo, most)
                 .map_err(|leaves| MemoryError::of_slabs(distance.mesh(), settings, leaves, bytes))?
         }
     })
