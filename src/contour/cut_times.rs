@@ -2,13 +2,13 @@
 
 use crate::band::SignField;
 use crate::contour::cell::CellNumbers;
-use crate::contour::cells::Cells;
 use crate::contour::edge_polygon::{EdgePolygon, for_polygons};
 use crate::contour::envelope::Envelope;
 use crate::contour::feature::Sides;
 use crate::contour::grid::Grid;
 use crate::contour::polygonize::{Cut, CutMethod, Fit, Polygon, polygonize};
-use crate::contour::{ContourError, ContourSettings, face_vertex, reach};
+use crate::contour::vertex::{Cells, face_vertices};
+use crate::contour::{ContourError, ContourSettings, reach};
 use crate::edge::Crossings;
 use crate::lattice::{Lattice, Slab};
 use crate::run::{Phase, RunSettings};
@@ -50,7 +50,7 @@ pub fn cut_times<const N: usize>(
         let phase = run.phase(Phase::Contour, (numbers.leaves().count() + signs.len()) as u64);
         let (cells, placed) = Cells::place(signs, crossings, grid, Slab::WHOLE, &numbers, None, &phase)?;
         let mut vertices = placed.vertices;
-        let mut faces = face_vertex::face_vertices(&cells, &vertices, run)?;
+        let mut faces = face_vertices(&cells, &vertices, run)?;
         vertices.append(&mut faces.positions);
         let mut times = [CutTimes::default(); N];
         let mut polygons: Vec<(Polygon, Envelope, Fit<'static>)> = Vec::new();

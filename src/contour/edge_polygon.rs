@@ -2,12 +2,11 @@
 
 use crate::band::LeafId;
 use crate::contour::cell::Edge;
-use crate::contour::cells::Cells;
 use crate::contour::envelope::Envelope;
-use crate::contour::face_vertex::FaceVertices;
 use crate::contour::feature::Sides;
 use crate::contour::leaf_cells::LeafCells;
 use crate::contour::polygonize::{Fit, Polygon, PolygonCorner};
+use crate::contour::vertex::{Cells, FaceVertices};
 use crate::edge::EdgeId;
 use crate::lattice::{Axis, Ijk, LEAF_DIM, bits};
 

@@ -2,12 +2,12 @@
 //! exact test of `patch`.
 
 use crate::contour::answers::Answers;
-use crate::contour::cells::Cells;
 use crate::contour::feature::{Asker, Features, Sides, VertexSet, feature_between, nearest};
 use crate::contour::grid::Grid;
 use crate::contour::patch::{Patch, PatchEdge, PatchTriangle};
 use crate::contour::qef::{cross, dot};
 use crate::contour::surface::Surface;
+use crate::contour::vertex::Cells;
 
 type Point = [f64; 3];
 

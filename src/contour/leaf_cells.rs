@@ -4,9 +4,7 @@
 use crate::band::LeafId;
 use crate::contour::beside::beside;
 use crate::contour::cell::{CaseTable, CellId, Edge};
-use crate::contour::cells::{CellCase, Cells};
-use crate::contour::face_vertex::FaceVertices;
-use crate::lattice::{Axis, Ijk, LEAF_DIM, bits};
+use crate::contour::vertex::{CellCase, Cells, FaceVertices};
 
 /// Cells along each axis: those of the leaf, and the last ones of the leaf before.
 const SIDE: usize = LEAF_DIM as usize + 1;

@@ -40,20 +40,17 @@
 //! the points where connections pass the cell's faces. On a face these triangles do not overlap, walls
 //! separate the cones of different sheets, and a disc of good triangles stays in its edge's tetrahedra.
 
+mod vertex;
 mod feature;
 mod cell;
 mod answers;
 mod beside;
-mod cells;
 mod cut_times;
 mod edge_polygon;
 mod editor;
 mod envelope;
-mod face_vertex;
 mod grid;
 mod leaf_cells;
-mod leaf_crossings;
-mod leaf_vertices;
 mod merge;
 mod order;
 mod output;
@@ -64,13 +61,10 @@ mod polygonize;
 pub(crate) mod qef;
 mod recover;
 mod refine;
-mod region;
 mod rounds;
 mod slots;
-mod smooth;
 mod statistics;
 mod surface;
-mod vertex;
 
 pub use cut_times::{CutTimes, cut_times};
 pub use grid::Precision;
@@ -81,11 +75,12 @@ pub use surface::{Creases, Surface};
 
 use crate::band::SignField;
 use crate::contour::cell::CellNumbers;
+use crate::contour::vertex::{Cells, Placements, face_vertices};
 use crate::edge::Crossings;
 use crate::lattice::{LEAF_DIM, Lattice, Slab};
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, Phase, RunSettings};
-use cells::{Cells, Placements};
+use crate::slab::Slab;
 use grid::Grid;
 use output::Triangulation;
 use recover::Wish;
@@ -227,7 +222,7 @@ pub fn contour_slab(
         let phase = run.phase(Phase::Contour, steps(&numbers, crossings));
         let (cells, placed) = Cells::place(signs, crossings, grid, settings.slab, &numbers, surface, &phase)?;
         let Placements { mut vertices, mut wishes, mut statistics } = placed;
-        let mut faces = face_vertex::face_vertices(&cells, &vertices, run)?;
+        let mut faces = face_vertices(&cells, &vertices, run)?;
         vertices.append(&mut faces.positions);
         let Triangulation { mut mesh, far, statistics: polygons, .. } =
             output::triangulate(&cells, &faces, vertices, settings.cut, &phase)?;
@@ -296,7 +291,7 @@ pub(crate) fn contour_by_edge(
         let phase = run.phase(Phase::Contour, steps(&numbers, crossings));
         let (cells, Placements { mut vertices, .. }) =
             Cells::place(signs, crossings, grid, Slab::WHOLE, &numbers, None, &phase)?;
-        let mut faces = face_vertex::face_vertices(&cells, &vertices, run)?;
+        let mut faces = face_vertices(&cells, &vertices, run)?;
         vertices.append(&mut faces.positions);
         let Triangulation { mesh, sizes, .. } =
             output::triangulate(&cells, &faces, vertices, CutMethod::default(), &phase)?;

@@ -63,7 +63,8 @@ impl LeafMesh {
         }
         firsts.resize(leaves + 1, next);
         let mut numbers = vec![0; self.mesh.vertices.len()];
-        let parts = super::cells::split(&mut numbers, self.runs.iter().map(|run| run.numbers.len()));
+        let parts =
+            crate::contour::vertex::split(&mut numbers, self.runs.iter().map(|run| run.numbers.len()));
         parts.into_par_iter().zip(&self.runs).zip(&starts).with_min_len(16).with_max_len(SHARE).for_each(
             |((part, run), &start)| {
                 let mut gone = gone_in(run).iter().peekable();
@@ -87,7 +88,7 @@ impl LeafMesh {
             ends[leaf + 1] = ends[leaf] + count;
         }
         let mut triangles = vec![[0; 3]; ends[leaves]];
-        let parts = super::cells::split(&mut triangles, counts.into_iter());
+        let parts = crate::contour::vertex::split(&mut triangles, counts.into_iter());
         parts.into_par_iter().enumerate().with_min_len(16).with_max_len(SHARE).for_each(|(leaf, part)| {
             for (to, number) in part.iter_mut().zip(of_leaf(leaf)) {
                 *to = self.mesh.triangles[number].map(|v| numbers[v as usize]);

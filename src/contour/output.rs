@@ -1,15 +1,13 @@
 //! The polygons around all crossed edges, cut into triangles and collected to a mesh.
 
 use crate::band::LeafId;
-use crate::contour::cells::{Cells, split};
 use crate::contour::edge_polygon::{EdgePolygon, for_polygons, on_axis};
-use crate::contour::face_vertex::FaceVertices;
 use crate::contour::feature::Asker;
 use crate::contour::order::VertexRun;
 use crate::contour::polygonize::{Cut, CutMethod, EDGE_VERTEX, Fit, polygonize};
 use crate::contour::rounds::{AXIS, LeafMesh};
 use crate::contour::slots::{Slots, Triangles};
-use crate::contour::vertex::is_missing;
+use crate::contour::vertex::{Cells, FaceVertices, is_missing, split};
 use crate::contour::{ContourError, ContourStatistics, TooManyVertices};
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, PhaseGuard, SHARE};

@@ -8,13 +8,13 @@
 //! First all vertices go to their places, then the rest is mended: a split that is made before the vertices around
 //! it are in place is in their way later.
 
-use crate::contour::cells::Cells;
 use crate::contour::editor::{Editor, mix};
 use crate::contour::feature::Sides;
 use crate::contour::merge::Arrival;
 use crate::contour::patch::Bounds;
 use crate::contour::rounds::LeafMesh;
 use crate::contour::surface::Surface;
+use crate::contour::vertex::Cells;
 use crate::run::{Cancelled, RunSettings};
 
 type Point = [f64; 3];

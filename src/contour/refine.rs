@@ -5,11 +5,11 @@
 //! made only if the mesh stays embedded (see `patch`).
 
 use crate::band::LeafId;
-use crate::contour::cells::Cells;
 use crate::contour::editor::Editor;
 use crate::contour::patch::Bounds;
 use crate::contour::rounds::LeafMesh;
 use crate::contour::surface::Surface;
+use crate::contour::vertex::Cells;
 use crate::run::{Cancelled, RunSettings};
 
 /// Passes over the mesh. Each halves the edges that are too far, so that the error of smooth parts shrinks to a

@@ -2,10 +2,10 @@
 //! on together, in eight rounds, so that the result does not depend on the number of threads.
 
 use crate::band::LeafId;
-use crate::contour::cells::Cells;
 use crate::contour::feature::REACH;
 use crate::contour::order::VertexRun;
 use crate::contour::patch::{Bounds, Changes, NEW_TRIANGLE, NEW_VERTEX, Patch};
+use crate::contour::vertex::Cells;
 use crate::lattice::{Ijk, LEAF_DIM};
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};

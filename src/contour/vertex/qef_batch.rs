@@ -9,12 +9,12 @@
 //! ```
 //!
 //! so the least point follows without an eigen decomposition: along v by a quotient, and in the plane across v by
-//! the two by two matrix, where its eigenvalues are above the [`CUTOFF`] of [`qef`](super::qef). What is not smooth is
-//! left to [`vertex`](super::vertex).
+//! the two by two matrix, where its eigenvalues are above the [`CUTOFF`] of [`qef`](crate::contour::qef). What is not smooth is
+//! left to [`cell_vertex`](super::cell_vertex).
 
+use super::cell_vertex::UNSURE;
 use crate::contour::feature::SPREAD;
 use crate::contour::qef::CUTOFF;
-use crate::contour::vertex::UNSURE;
 use crate::geom::lanes::{F64s, M64s, P64s, in_lanes};
 use pulp::{Simd, WithSimd};
 

@@ -13,11 +13,11 @@
 //!     c ------ n1
 //! ```
 
-use crate::band::{LeafId, SignField};
+use super::cell_vertex::is_missing;
+use super::cells::Cells;
+use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, SignField, bits};
 use crate::contour::cell::{Case, CellId, CellNumbers, Corner, Edge, Face, Pair, locate};
-use crate::contour::cells::Cells;
 use crate::contour::grid::Grid;
-use crate::contour::vertex::is_missing;
 use crate::contour::{ContourError, TooManyVertices};
 use crate::edge::Crossings;
 use crate::geom::predicates::orient3d;

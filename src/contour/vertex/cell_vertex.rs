@@ -1,11 +1,12 @@
 //! The vertex of a sheet: as close to the minimiser of its quadratic error function as its cell and its
 //! walls allow.
 
+use super::feasible_region::Region;
+use crate::band::Ijk;
 use crate::contour::cell::{Case, Edge, EdgeSet};
 use crate::contour::feature::{Asker, Feature, Normals, SPREAD, Samples, feature, nearest};
 use crate::contour::grid::Grid;
 use crate::contour::qef::{Minimiser, Qef, along};
-use crate::contour::region::Region;
 use crate::contour::surface::Surface;
 use crate::edge::Crossing;
 use crate::lattice::Ijk;

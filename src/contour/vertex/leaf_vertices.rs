@@ -1,14 +1,13 @@
 //! The vertices of the cells of one leaf.
 
-use crate::band::LeafId;
+use super::cell_vertex::{self, Placement, sample};
+use super::cells::{CellCase, Cells};
+use super::leaf_crossings::LeafCrossings;
+use super::qef_batch::{Batch, LANES};
+use crate::band::{Ijk, LeafId, bits};
 use crate::contour::cell::{Case, CaseTable, CornerSigns, constant_case};
-use crate::contour::cells::{CellCase, Cells};
 use crate::contour::feature::{FeatureVertex, Normals};
-use crate::contour::leaf_crossings::LeafCrossings;
 use crate::contour::recover::Wish;
-use crate::contour::smooth::{Batch, LANES};
-use crate::contour::vertex::{self, Placement, sample};
-use crate::lattice::{Ijk, bits};
 
 /// What is found of a leaf's cells besides the positions of their vertices.
 #[derive(Debug, Default)]
@@ -21,7 +20,7 @@ pub struct LeafVertices {
     pub jumps: Vec<u32>,
     /// Cells with more than one sheet. Small numbers: most leaves have no cells, and there is this for all.
     pub several_sheets: u16,
-    /// See [`ContourStatistics::clamped`](super::ContourStatistics::clamped).
+    /// See [`ContourStatistics::clamped`](crate::contour::ContourStatistics::clamped).
     pub clamped: u16,
     /// Whether any cell is crowded ([`CornerSigns::crowded`]).
     pub is_crowded: bool,
@@ -74,7 +73,7 @@ impl LeafVertices {
             let case = table.case(id);
             if cells.crossings.numbers.is_open() && !placer.has_all_crossings(case, number) {
                 let vertices = &mut placer.vertices[first..first + case.sheets().len()];
-                vertices.fill(vertex::MISSING);
+                vertices.fill(cell_vertex::MISSING);
                 first += case.sheets().len();
                 continue;
             }
@@ -122,7 +121,7 @@ impl Placer<'_> {
         for n in 0..LANES {
             let Some(cell) = self.waiting[n].take() else { break };
             let at = self.cells.signs.origin(self.leaf) + cell.local;
-            let smooth = solved.smooth(n).and_then(|point| vertex::free(&self.cells.grid, at, point));
+            let smooth = solved.smooth(n).and_then(|point| cell_vertex::free(&self.cells.grid, at, point));
             match smooth {
                 Some(position) => self.vertices[cell.first] = position,
                 None => self.place_one(cell, 0),
@@ -135,7 +134,7 @@ impl Placer<'_> {
         let Cells { signs, grid, numbers, surface, .. } = self.cells;
         let at = signs.origin(self.leaf) + local;
         let crossing = |edge| self.crossings.of_cell(local.0, edge);
-        let placed = vertex::place(grid, at, case, sheet, crossing, *surface);
+        let placed = cell_vertex::place(grid, at, case, sheet, crossing, *surface);
         let number = first + sheet;
         self.vertices[number] = placed.position;
         self.found.clamped += u16::from(placed.placement == Placement::Clamped);

@@ -1,11 +1,11 @@
 //! The active cells: their cases and the vertices of their sheets.
 
+use super::leaf_vertices::LeafVertices;
 use crate::band::{LeafId, SignField};
 use crate::contour::ContourStatistics;
 use crate::contour::cell::{Case, CaseId, CaseTable, CellId, CellNumbers, Edge};
 use crate::contour::feature::{Bend, Features, VertexSet};
 use crate::contour::grid::Grid;
-use crate::contour::leaf_vertices::LeafVertices;
 use crate::contour::recover::Wish;
 use crate::contour::surface::Surface;
 use crate::edge::Crossings;
@@ -36,7 +36,7 @@ pub struct Cells<'a> {
     /// elsewhere.
     pub jumps: VertexSet,
     cases: Vec<CellCase>,
-    /// By leaf, whether any of its cells is crowded ([`CornerSigns::crowded`](super::cell::CornerSigns::crowded)).
+    /// By leaf, whether any of its cells is crowded ([`CornerSigns::crowded`](crate::contour::cell::CornerSigns::crowded)).
     crowded: Vec<bool>,
 }
 
