@@ -40,24 +40,18 @@
 //! the points where connections pass the cell's faces. On a face these triangles do not overlap, walls
 //! separate the cones of different sheets, and a disc of good triangles stays in its edge's tetrahedra.
 
+mod polygon;
 mod vertex;
 mod feature;
 mod cell;
 mod answers;
 mod beside;
-mod cut_times;
-mod edge_polygon;
 mod editor;
-mod envelope;
 mod grid;
-mod leaf_cells;
 mod merge;
 mod order;
-mod output;
 mod patch;
 mod pieces;
-mod polygon_edges;
-mod polygonize;
 pub(crate) mod qef;
 mod recover;
 mod refine;
@@ -66,15 +60,15 @@ mod slots;
 mod statistics;
 mod surface;
 
-pub use cut_times::{CutTimes, cut_times};
+pub use crate::contour::polygon::{CutMethod, CutTimes, cut_times};
 pub use grid::Precision;
-pub use polygonize::CutMethod;
 pub use rounds::STRAY;
 pub use statistics::ContourStatistics;
 pub use surface::{Creases, Surface};
 
 use crate::band::SignField;
 use crate::contour::cell::CellNumbers;
+use crate::contour::polygon::{Triangulation, triangulate};
 use crate::contour::vertex::{Cells, Placements, face_vertices};
 use crate::edge::Crossings;
 use crate::lattice::{LEAF_DIM, Lattice, Slab};
@@ -82,7 +76,6 @@ use crate::mesh::TriMesh;
 use crate::run::{Cancelled, Phase, RunSettings};
 use crate::slab::Slab;
 use grid::Grid;
-use output::Triangulation;
 use recover::Wish;
 use rounds::LeafMesh;
 use std::ops::Range;
@@ -225,7 +218,7 @@ pub fn contour_slab(
         let mut faces = face_vertices(&cells, &vertices, run)?;
         vertices.append(&mut faces.positions);
         let Triangulation { mut mesh, far, statistics: polygons, .. } =
-            output::triangulate(&cells, &faces, vertices, settings.cut, &phase)?;
+            triangulate(&cells, &faces, vertices, settings.cut, &phase)?;
         statistics += polygons;
         if let Some(surface) = surface {
             for (leaf, far) in far {
@@ -294,7 +287,7 @@ pub(crate) fn contour_by_edge(
         let mut faces = face_vertices(&cells, &vertices, run)?;
         vertices.append(&mut faces.positions);
         let Triangulation { mesh, sizes, .. } =
-            output::triangulate(&cells, &faces, vertices, CutMethod::default(), &phase)?;
+            triangulate(&cells, &faces, vertices, CutMethod::default(), &phase)?;
         let mut mesh = mesh.into_ordered().mesh;
         if crossings.numbers.is_open() {
             mesh.drop_idle_vertices(0);

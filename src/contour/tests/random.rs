@@ -1,8 +1,9 @@
 //! Random lattices made to be nasty, each judged by the exact audit.
 
-use crate::band::SignField;
+use crate::band::{Axis, Ijk, SignField};
+use crate::contour::polygon::cut_times;
 use crate::contour::tests::fields::{Random, crossings, cut_by, run, signs};
-use crate::contour::{ContourSettings, ContourStatistics, CutMethod, Precision, cut_times};
+use crate::contour::{ContourSettings, ContourStatistics, CutMethod, Precision};
 use crate::edge::{Crossing, Crossings};
 use crate::lattice::{Axis, Ijk};
 use crate::verify::tests::audit::audit;

@@ -1,12 +1,12 @@
 //! The time that choosing and making the triangles takes, by method (\[LW11\] Table VI).
 
-use crate::band::SignField;
+use super::edge_polygon::{EdgePolygon, for_polygons};
+use super::envelope::Envelope;
+use super::triangulate::{Cut, CutMethod, Fit, Polygon, polygonize};
+use crate::band::{Lattice, SignField};
 use crate::contour::cell::CellNumbers;
-use crate::contour::edge_polygon::{EdgePolygon, for_polygons};
-use crate::contour::envelope::Envelope;
 use crate::contour::feature::Sides;
 use crate::contour::grid::Grid;
-use crate::contour::polygonize::{Cut, CutMethod, Fit, Polygon, polygonize};
 use crate::contour::vertex::{Cells, face_vertices};
 use crate::contour::{ContourError, ContourSettings, reach};
 use crate::edge::Crossings;
@@ -32,7 +32,7 @@ pub struct CutTimes {
 /// Cuts the polygons of the surface once by each of `methods`, on one thread, and measures that part alone.
 ///
 /// # Errors
-/// As [`contour`](super::contour).
+/// As [`contour`](crate::contour::contour).
 ///
 /// # Panics
 /// When `crossings` does not belong to `signs`.

@@ -1,11 +1,11 @@
 //! The polygon around each crossed grid edge: the vertices of the four cells around it, and face vertices between them.
 
-use crate::band::LeafId;
+use super::envelope::Envelope;
+use super::leaf_cells::LeafCells;
+use super::triangulate::{Fit, Polygon, PolygonCorner};
+use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, bits};
 use crate::contour::cell::Edge;
-use crate::contour::envelope::Envelope;
 use crate::contour::feature::Sides;
-use crate::contour::leaf_cells::LeafCells;
-use crate::contour::polygonize::{Fit, Polygon, PolygonCorner};
 use crate::contour::vertex::{Cells, FaceVertices};
 use crate::edge::EdgeId;
 use crate::lattice::{Axis, Ijk, LEAF_DIM, bits};

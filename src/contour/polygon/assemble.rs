@@ -1,10 +1,10 @@
 //! The polygons around all crossed edges, cut into triangles and collected to a mesh.
 
+use super::edge_polygon::{EdgePolygon, for_polygons, on_axis};
+use super::triangulate::{Cut, CutMethod, EDGE_VERTEX, Fit, polygonize};
 use crate::band::LeafId;
-use crate::contour::edge_polygon::{EdgePolygon, for_polygons, on_axis};
 use crate::contour::feature::Asker;
 use crate::contour::order::VertexRun;
-use crate::contour::polygonize::{Cut, CutMethod, EDGE_VERTEX, Fit, polygonize};
 use crate::contour::rounds::{AXIS, LeafMesh};
 use crate::contour::slots::{Slots, Triangles};
 use crate::contour::vertex::{Cells, FaceVertices, is_missing, split};

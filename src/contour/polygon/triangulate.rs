@@ -1,8 +1,8 @@
 //! From the polygon around a crossed grid edge to triangles.
 
-use crate::contour::envelope::Envelope;
+use super::envelope::Envelope;
+use super::ju_udeshi;
 use crate::contour::feature::Sides;
-use crate::contour::polygon_edges;
 use crate::contour::qef::dot;
 
 /// Four cell vertices, and a face vertex between any two of them.
@@ -158,7 +158,7 @@ pub fn polygonize(
         CutMethod::ConvexConcave if polygon.len > 4 => return ears(polygon, envelope, fit, triangles),
         CutMethod::ConvexConcave => quad(polygon, fit, is_good(envelope)),
         CutMethod::PolygonEdges if polygon.len > 4 => None,
-        CutMethod::PolygonEdges => quad(polygon, fit, |quad| polygon_edges::is_legal(quad, envelope)),
+        CutMethod::PolygonEdges => quad(polygon, fit, |quad| ju_udeshi::is_legal(quad, envelope)),
     };
     match cut {
         Some(cut) => {

@@ -14,7 +14,7 @@
 //! Both tests are strict. A diagonal that meets the grid edge itself crosses neither wall and is given up for
 //! a vertex on the edge, which is what \[LW11\] says of such cases.
 
-use crate::contour::envelope::Envelope;
+use super::envelope::Envelope;
 use crate::geom::predicates::orient3d;
 
 /// Whether both triangles that the diagonal from the first to the third corner of `quad` makes stay in the
