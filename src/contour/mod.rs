@@ -40,6 +40,7 @@
 //! the points where connections pass the cell's faces. On a face these triangles do not overlap, walls
 //! separate the cones of different sheets, and a disc of good triangles stays in its edge's tetrahedra.
 
+mod mesh;
 mod polygon;
 mod vertex;
 mod feature;
@@ -49,14 +50,11 @@ mod beside;
 mod editor;
 mod grid;
 mod merge;
-mod order;
 mod patch;
-mod pieces;
 pub(crate) mod qef;
 mod recover;
 mod refine;
 mod rounds;
-mod slots;
 mod statistics;
 mod surface;
 

@@ -3,8 +3,9 @@
 
 use crate::band::LeafId;
 use crate::contour::feature::REACH;
-use crate::contour::order::VertexRun;
-use crate::contour::patch::{Bounds, Changes, NEW_TRIANGLE, NEW_VERTEX, Patch};
+use crate::contour::mesh::VertexRun;
+use crate::contour::mesh::{Changes, NEW_TRIANGLE, NEW_VERTEX};
+use crate::contour::patch::{Bounds, Patch};
 use crate::contour::vertex::Cells;
 use crate::lattice::{Ijk, LEAF_DIM};
 use crate::mesh::TriMesh;

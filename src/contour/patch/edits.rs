@@ -1,7 +1,7 @@
 //! Moves, splits and flips.
 
+use crate::contour::mesh::{NEW_TRIANGLE, NEW_VERTEX};
 use crate::contour::patch::Patch;
-use crate::contour::patch::changes::{NEW_TRIANGLE, NEW_VERTEX};
 use crate::contour::patch::triangle::{OWN_HOME, PatchEdge, PatchTriangle};
 
 type Point = [f64; 3];

@@ -11,7 +11,6 @@
 //! them also stays near that one ([`PatchTriangle::home`]).
 
 mod bounds;
-mod changes;
 mod collapse;
 mod edits;
 mod index;
@@ -19,8 +18,8 @@ mod index;
 mod tests;
 mod triangle;
 
+use crate::contour::mesh::Changes;
 pub use bounds::Bounds;
-pub use changes::{Changes, NEW_TRIANGLE, NEW_VERTEX};
 use index::{Boxes, Corners};
 pub use triangle::{Homes, PatchEdge, PatchTriangle};
 

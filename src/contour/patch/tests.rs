@@ -1,6 +1,6 @@
 use super::*;
 use crate::band::LeafId;
-use crate::contour::order::VertexRun;
+use crate::contour::mesh::VertexRun;
 use crate::contour::rounds::{CHANGED, LeafMesh};
 use crate::mesh::{Topology, TriMesh, shapes};
 use crate::verify::tests::audit::audit;

@@ -1,7 +1,7 @@
 //! The triangles of all leaves in one array, each leaf's written where they stay: nearly all edges have two, so that
 //! nothing needs to be moved but what comes after the few others.
 
-use crate::contour::pieces::{move_pieces, push_piece};
+use super::compact::{move_pieces, push_piece};
 use crate::contour::vertex::split;
 
 /// Triangles, with the edges that they lie around.

@@ -3,8 +3,8 @@
 //! While it is made, a mesh has its vertices by kind, and what changes add at the end. That order depends on the whole
 //! lattice. In the order of leaves, the vertices and triangles of some leaves stand together, wherever the rest is made.
 
+use super::compact::{move_pieces, push_piece};
 use crate::band::LeafId;
-use crate::contour::pieces::{move_pieces, push_piece};
 use crate::contour::rounds::LeafMesh;
 use crate::mesh::TriMesh;
 use crate::run::SHARE;
