@@ -40,32 +40,27 @@
 //! the points where connections pass the cell's faces. On a face these triangles do not overlap, walls
 //! separate the cones of different sheets, and a disc of good triangles stays in its edge's tetrahedra.
 
+mod optimize;
 mod mesh;
 mod polygon;
 mod vertex;
 mod feature;
 mod cell;
-mod answers;
 mod beside;
-mod editor;
 mod grid;
-mod merge;
-mod patch;
 pub(crate) mod qef;
-mod recover;
-mod refine;
-mod rounds;
 mod statistics;
 mod surface;
 
+pub use crate::contour::optimize::STRAY;
 pub use crate::contour::polygon::{CutMethod, CutTimes, cut_times};
 pub use grid::Precision;
-pub use rounds::STRAY;
 pub use statistics::ContourStatistics;
 pub use surface::{Creases, Surface};
 
 use crate::band::SignField;
 use crate::contour::cell::CellNumbers;
+use crate::contour::optimize::{AT_CUT, LeafMesh, RECOVERY_STAGES, TOLERANCE_STAGES, Wish, recover, refine};
 use crate::contour::polygon::{Triangulation, triangulate};
 use crate::contour::vertex::{Cells, Placements, face_vertices};
 use crate::edge::Crossings;
@@ -74,8 +69,6 @@ use crate::mesh::TriMesh;
 use crate::run::{Cancelled, Phase, RunSettings};
 use crate::slab::Slab;
 use grid::Grid;
-use recover::Wish;
-use rounds::LeafMesh;
 use std::ops::Range;
 
 /// Settings of [`contour`].
@@ -226,7 +219,7 @@ pub fn contour_slab(
                 wishes.sort_by_key(|wish| (wish.vertex, wish.place.is_none()));
                 wishes.dedup_by_key(|wish| wish.vertex);
             }
-            let recovered = recover::recover(&cells, surface, &wishes, &mut mesh, run)?;
+            let recovered = recover(&cells, surface, &wishes, &mut mesh, run)?;
             statistics.recovered = recovered.moved;
             statistics.refused = recovered.refused;
             statistics.merged = recovered.merged;
@@ -234,7 +227,7 @@ pub fn contour_slab(
             statistics.refined = recovered.split;
             statistics.given_up = recovered.given_up;
             if let Some(tolerance) = settings.tolerance {
-                let refined = refine::refine(&cells, surface, tolerance, &mut mesh, run)?;
+                let refined = refine(&cells, surface, tolerance, &mut mesh, run)?;
                 statistics.recovered += refined.moved;
                 statistics.refined += refined.split;
                 statistics.beyond_tolerance = Some(refined.beyond);
@@ -255,8 +248,8 @@ pub fn contour_slab(
 /// two leaves for each stage. Those at the cut are not worked on, and the vertices of triangles at a plane lie up to two
 /// leaves beyond it.
 pub fn halo(settings: &ContourSettings) -> i32 {
-    let stages = recover::STAGES.len() + settings.tolerance.map_or(0, |_| refine::STAGES);
-    LEAF_DIM * (rounds::AT_CUT + 2 * stages as i32 + 2)
+    let stages = RECOVERY_STAGES.len() + settings.tolerance.map_or(0, |_| TOLERANCE_STAGES);
+    LEAF_DIM * (AT_CUT + 2 * stages as i32 + 2)
 }
 
 /// The same as [`contour`] without a surface to ask, and with the number of triangles around each crossed edge, in the

@@ -5,7 +5,7 @@
 
 use super::compact::{move_pieces, push_piece};
 use crate::band::LeafId;
-use crate::contour::rounds::LeafMesh;
+use crate::contour::optimize::LeafMesh;
 use crate::mesh::TriMesh;
 use crate::run::SHARE;
 use rayon::prelude::*;

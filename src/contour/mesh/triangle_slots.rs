@@ -9,7 +9,7 @@ use crate::contour::vertex::split;
 pub struct Triangles {
     /// The numbers of their vertices.
     pub corners: Vec<[u32; 3]>,
-    /// See [`LeafMesh::edges`](super::rounds::LeafMesh::edges).
+    /// See [`LeafMesh::edges`](crate::contour::optimize::LeafMesh::edges).
     pub edges: Vec<u16>,
 }
 

@@ -5,7 +5,7 @@ use super::triangulate::{Cut, CutMethod, EDGE_VERTEX, Fit, polygonize};
 use crate::band::LeafId;
 use crate::contour::feature::Asker;
 use crate::contour::mesh::{Slots, Triangles, VertexRun};
-use crate::contour::rounds::{AXIS, LeafMesh};
+use crate::contour::optimize::{AXIS, LeafMesh};
 use crate::contour::vertex::{Cells, FaceVertices, is_missing, split};
 use crate::contour::{ContourError, ContourStatistics, TooManyVertices};
 use crate::mesh::TriMesh;

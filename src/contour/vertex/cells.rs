@@ -6,7 +6,7 @@ use crate::contour::ContourStatistics;
 use crate::contour::cell::{Case, CaseId, CaseTable, CellId, CellNumbers, Edge};
 use crate::contour::feature::{Bend, Features, VertexSet};
 use crate::contour::grid::Grid;
-use crate::contour::recover::Wish;
+use crate::contour::optimize::Wish;
 use crate::contour::surface::Surface;
 use crate::edge::Crossings;
 use crate::lattice::Slab;

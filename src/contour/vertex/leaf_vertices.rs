@@ -7,7 +7,7 @@ use super::qef_batch::{Batch, LANES};
 use crate::band::{Ijk, LeafId, bits};
 use crate::contour::cell::{Case, CaseTable, CornerSigns, constant_case};
 use crate::contour::feature::{FeatureVertex, Normals};
-use crate::contour::recover::Wish;
+use crate::contour::optimize::Wish;
 
 /// What is found of a leaf's cells besides the positions of their vertices.
 #[derive(Debug, Default)]

@@ -1,6 +1,6 @@
 //! Which triangles of a patch are at a vertex, and which are near a place, without a look at all of them.
 
-use crate::contour::patch::Bounds;
+use super::Bounds;
 
 /// No vertex, and no corner, has this number.
 const NONE: u32 = u32::MAX;

@@ -1,8 +1,8 @@
 //! Moves, splits and flips.
 
+use super::Patch;
+use super::triangle::{OWN_HOME, PatchEdge, PatchTriangle};
 use crate::contour::mesh::{NEW_TRIANGLE, NEW_VERTEX};
-use crate::contour::patch::Patch;
-use crate::contour::patch::triangle::{OWN_HOME, PatchEdge, PatchTriangle};
 
 type Point = [f64; 3];
 

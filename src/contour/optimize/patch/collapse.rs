@@ -13,8 +13,8 @@
 //! and in d only, and close to one fan around the merged vertex; c and d lose a triangle of four or more; no two
 //! triangles become the same. The mesh stays closed and 2-manifold, and keeps its genus.
 
-use crate::contour::patch::triangle::PatchTriangle;
-use crate::contour::patch::{Patch, Point};
+use super::triangle::PatchTriangle;
+use super::{Patch, Point};
 
 /// An edge merged to a vertex, where the link condition holds.
 struct Merged {

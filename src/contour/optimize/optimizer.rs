@@ -1,10 +1,10 @@
 //! Changes of a finished mesh that bring it nearer to the surface: which to try. Whether they are made decides the
 //! exact test of `patch`.
 
-use crate::contour::answers::Answers;
+use super::distance_cache::Answers;
+use super::patch::{Patch, PatchEdge, PatchTriangle};
 use crate::contour::feature::{Asker, Features, Sides, VertexSet, feature_between, nearest};
 use crate::contour::grid::Grid;
-use crate::contour::patch::{Patch, PatchEdge, PatchTriangle};
 use crate::contour::qef::{cross, dot};
 use crate::contour::surface::Surface;
 use crate::contour::vertex::Cells;

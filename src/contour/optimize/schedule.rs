@@ -1,11 +1,10 @@
 //! A finished mesh changed leaf by leaf: leaves that are far enough apart not to touch the same triangles are worked
 //! on together, in eight rounds, so that the result does not depend on the number of threads.
 
+use super::patch::{Bounds, Patch};
 use crate::band::LeafId;
 use crate::contour::feature::REACH;
-use crate::contour::mesh::VertexRun;
-use crate::contour::mesh::{Changes, NEW_TRIANGLE, NEW_VERTEX};
-use crate::contour::patch::{Bounds, Patch};
+use crate::contour::mesh::{Changes, NEW_TRIANGLE, NEW_VERTEX, VertexRun};
 use crate::contour::vertex::Cells;
 use crate::lattice::{Ijk, LEAF_DIM};
 use crate::mesh::TriMesh;

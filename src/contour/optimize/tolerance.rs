@@ -4,10 +4,10 @@
 //! split at the worst place, with a new vertex on the surface or on its crease, as often as it takes; each change is
 //! made only if the mesh stays embedded (see `patch`).
 
+use super::optimizer::Editor;
+use super::patch::Bounds;
+use super::schedule::LeafMesh;
 use crate::band::LeafId;
-use crate::contour::editor::Editor;
-use crate::contour::patch::Bounds;
-use crate::contour::rounds::LeafMesh;
 use crate::contour::surface::Surface;
 use crate::contour::vertex::Cells;
 use crate::run::{Cancelled, RunSettings};

@@ -1,6 +1,6 @@
 //! The triangles of a patch, and the edges between them.
 
-use crate::contour::patch::bounds::Bounds;
+use super::bounds::Bounds;
 use crate::geom::predicates::projection_axis;
 use crate::geom::triangle_pair::meeting_point;
 

@@ -1,8 +1,8 @@
 //! Edges merged to a vertex where another change is in the way.
 
-use crate::contour::editor::{Editor, middle};
+use super::optimizer::{Editor, middle};
+use super::patch::PatchTriangle;
 use crate::contour::feature::{FeatureVertex, Sides};
-use crate::contour::patch::PatchTriangle;
 use crate::contour::qef::{along, cross, distance2, dot};
 use crate::geom::triangle::Triangle;
 use glam::DVec3;

@@ -1,7 +1,7 @@
 use super::*;
 use crate::band::LeafId;
 use crate::contour::mesh::VertexRun;
-use crate::contour::rounds::{CHANGED, LeafMesh};
+use crate::contour::optimize::schedule::{CHANGED, LeafMesh};
 use crate::mesh::{Topology, TriMesh, shapes};
 use crate::verify::tests::audit::audit;
 

@@ -8,11 +8,11 @@
 //! First all vertices go to their places, then the rest is mended: a split that is made before the vertices around
 //! it are in place is in their way later.
 
-use crate::contour::editor::{Editor, mix};
+use super::collapse::Arrival;
+use super::optimizer::{Editor, mix};
+use super::patch::Bounds;
+use super::schedule::LeafMesh;
 use crate::contour::feature::Sides;
-use crate::contour::merge::Arrival;
-use crate::contour::patch::Bounds;
-use crate::contour::rounds::LeafMesh;
 use crate::contour::surface::Surface;
 use crate::contour::vertex::Cells;
 use crate::run::{Cancelled, RunSettings};

@@ -1,0 +1,13 @@
+//! Changes of the finished mesh: features recovered, and a tolerance kept, by edits that an exact test allows.
+
+mod collapse;
+mod distance_cache;
+mod feature_recovery;
+mod optimizer;
+mod patch;
+mod schedule;
+mod tolerance;
+
+pub use feature_recovery::{STAGES as RECOVERY_STAGES, Wish, recover};
+pub use schedule::{AT_CUT, AXIS, LeafMesh, STRAY};
+pub use tolerance::{STAGES as TOLERANCE_STAGES, refine};
