@@ -46,17 +46,15 @@ mod polygon;
 mod vertex;
 mod feature;
 mod cell;
-mod beside;
-mod grid;
-pub(crate) mod qef;
+mod rounded_lattice;
 mod statistics;
-mod surface;
+mod implicit_surface;
 
 pub use crate::contour::optimize::STRAY;
 pub use crate::contour::polygon::{CutMethod, CutTimes, cut_times};
-pub use grid::Precision;
+pub use implicit_surface::{Creases, Surface};
+pub use rounded_lattice::Precision;
 pub use statistics::ContourStatistics;
-pub use surface::{Creases, Surface};
 
 use crate::band::SignField;
 use crate::contour::cell::CellNumbers;
@@ -67,8 +65,7 @@ use crate::edge::Crossings;
 use crate::lattice::{LEAF_DIM, Lattice, Slab};
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, Phase, RunSettings};
-use crate::slab::Slab;
-use grid::Grid;
+use rounded_lattice::Grid;
 use std::ops::Range;
 
 /// Settings of [`contour`].

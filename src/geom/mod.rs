@@ -4,6 +4,7 @@ pub mod aabb;
 pub mod box_tree;
 pub mod lanes;
 pub mod predicates;
+pub mod quadric;
 pub mod roots;
 pub mod swept;
 pub mod sym3;

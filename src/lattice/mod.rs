@@ -10,10 +10,12 @@
 //!  number = 64 x + 8 y + z      word x of a 512-bit mask, bit 8 y + z of that word
 //! ```
 
+mod facing_layer;
 pub(crate) mod leaf_index;
 mod leaf_mask;
 mod slab;
 
+pub use facing_layer::facing_layer;
 pub use leaf_index::LeafIndex;
 pub use leaf_mask::{LeafMask, Z_FIRST, Z_LAST, bits};
 pub use slab::Slab;

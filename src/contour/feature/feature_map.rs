@@ -3,8 +3,8 @@
 use super::locate::Feature;
 use super::tangent_planes::MAX_PLANES;
 use super::vertex_set::VertexSet;
-use crate::contour::qef::dot;
-use crate::contour::surface::{Creases, Surface};
+use crate::contour::implicit_surface::{Creases, Surface};
+use crate::geom::quadric::dot;
 
 type Point = [f64; 3];
 

@@ -12,8 +12,8 @@
 //! ```
 
 use super::tangent_planes::{Normals, ONE_SIDE, Plane, Planes, Samples, sides};
-use crate::contour::qef::{along, distance2, dot};
-use crate::contour::surface::Surface;
+use crate::contour::implicit_surface::Surface;
+use crate::geom::quadric::{along, distance2, dot};
 
 type Point = [f64; 3];
 

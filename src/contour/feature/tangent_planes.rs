@@ -1,7 +1,7 @@
 //! Planes of the surface: those that the crossings of a sheet see, by the sides of a crease that they are on, and where
 //! planes meet.
 
-use crate::contour::qef::{Qef, along, distance2, dot};
+use crate::geom::quadric::{Qef, along, distance2, dot};
 
 type Point = [f64; 3];
 

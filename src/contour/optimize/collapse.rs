@@ -3,7 +3,7 @@
 use super::optimizer::{Editor, middle};
 use super::patch::PatchTriangle;
 use crate::contour::feature::{FeatureVertex, Sides};
-use crate::contour::qef::{along, cross, distance2, dot};
+use crate::geom::quadric::{along, cross, distance2, dot};
 use crate::geom::triangle::Triangle;
 use glam::DVec3;
 

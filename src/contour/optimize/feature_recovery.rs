@@ -13,7 +13,7 @@ use super::optimizer::{Editor, mix};
 use super::patch::Bounds;
 use super::schedule::LeafMesh;
 use crate::contour::feature::Sides;
-use crate::contour::surface::Surface;
+use crate::contour::implicit_surface::Surface;
 use crate::contour::vertex::Cells;
 use crate::run::{Cancelled, RunSettings};
 

@@ -4,10 +4,10 @@
 use super::distance_cache::Answers;
 use super::patch::{Patch, PatchEdge, PatchTriangle};
 use crate::contour::feature::{Asker, Features, Sides, VertexSet, feature_between, nearest};
-use crate::contour::grid::Grid;
-use crate::contour::qef::{cross, dot};
-use crate::contour::surface::Surface;
+use crate::contour::implicit_surface::Surface;
+use crate::contour::rounded_lattice::Grid;
 use crate::contour::vertex::Cells;
+use crate::geom::quadric::{cross, dot};
 
 type Point = [f64; 3];
 

@@ -8,7 +8,7 @@ use super::optimizer::Editor;
 use super::patch::Bounds;
 use super::schedule::LeafMesh;
 use crate::band::LeafId;
-use crate::contour::surface::Surface;
+use crate::contour::implicit_surface::Surface;
 use crate::contour::vertex::Cells;
 use crate::run::{Cancelled, RunSettings};
 

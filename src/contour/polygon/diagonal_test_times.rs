@@ -3,10 +3,10 @@
 use super::edge_polygon::{EdgePolygon, for_polygons};
 use super::envelope::Envelope;
 use super::triangulate::{Cut, CutMethod, Fit, Polygon, polygonize};
-use crate::band::{Lattice, SignField};
+use crate::band::SignField;
 use crate::contour::cell::CellNumbers;
 use crate::contour::feature::Sides;
-use crate::contour::grid::Grid;
+use crate::contour::rounded_lattice::Grid;
 use crate::contour::vertex::{Cells, face_vertices};
 use crate::contour::{ContourError, ContourSettings, reach};
 use crate::edge::Crossings;

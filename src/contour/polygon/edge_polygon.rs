@@ -3,7 +3,7 @@
 use super::envelope::Envelope;
 use super::leaf_cells::LeafCells;
 use super::triangulate::{Fit, Polygon, PolygonCorner};
-use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, bits};
+use crate::band::LeafId;
 use crate::contour::cell::Edge;
 use crate::contour::feature::Sides;
 use crate::contour::vertex::{Cells, FaceVertices};

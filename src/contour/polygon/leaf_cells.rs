@@ -2,9 +2,9 @@
 //! edges, and finding it among all cells takes longer than what is done with it.
 
 use crate::band::LeafId;
-use crate::contour::beside::beside;
 use crate::contour::cell::{CaseTable, CellId, Edge};
 use crate::contour::vertex::{CellCase, Cells, FaceVertices};
+use crate::lattice::{Axis, Ijk, LEAF_DIM, bits, facing_layer};
 
 /// Cells along each axis: those of the leaf, and the last ones of the leaf before.
 const SIDE: usize = LEAF_DIM as usize + 1;
@@ -54,7 +54,7 @@ impl<'a> LeafCells<'a> {
                 }
                 continue;
             }
-            for number in bits(&beside(active, delta)) {
+            for number in bits(&facing_layer(active, delta)) {
                 around.cases[place(number)] = cells.cell_case(cells.numbers.id(other, number));
             }
         }

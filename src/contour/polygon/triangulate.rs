@@ -3,7 +3,7 @@
 use super::envelope::Envelope;
 use super::ju_udeshi;
 use crate::contour::feature::Sides;
-use crate::contour::qef::dot;
+use crate::geom::quadric::dot;
 
 /// Four cell vertices, and a face vertex between any two of them.
 const MAX_CORNERS: usize = 8;

@@ -1,6 +1,6 @@
 //! Random lattices made to be nasty, each judged by the exact audit.
 
-use crate::band::{Axis, Ijk, SignField};
+use crate::band::SignField;
 use crate::contour::polygon::cut_times;
 use crate::contour::tests::fields::{Random, crossings, cut_by, run, signs};
 use crate::contour::{ContourSettings, ContourStatistics, CutMethod, Precision};

@@ -2,13 +2,12 @@
 //! walls allow.
 
 use super::feasible_region::Region;
-use crate::band::Ijk;
 use crate::contour::cell::{Case, Edge, EdgeSet};
 use crate::contour::feature::{Asker, Feature, Normals, SPREAD, Samples, feature, nearest};
-use crate::contour::grid::Grid;
-use crate::contour::qef::{Minimiser, Qef, along};
-use crate::contour::surface::Surface;
+use crate::contour::implicit_surface::Surface;
+use crate::contour::rounded_lattice::Grid;
 use crate::edge::Crossing;
+use crate::geom::quadric::{Minimiser, Qef, along};
 use crate::lattice::Ijk;
 
 /// After rounding, a vertex keeps at least this share of the margin. The margin is 2 units in the last place

@@ -15,9 +15,9 @@
 
 use super::cell_vertex::is_missing;
 use super::cells::Cells;
-use crate::band::{Axis, Ijk, LEAF_DIM, LeafId, SignField, bits};
+use crate::band::{LeafId, SignField};
 use crate::contour::cell::{Case, CellId, CellNumbers, Corner, Edge, Face, Pair, locate};
-use crate::contour::grid::Grid;
+use crate::contour::rounded_lattice::Grid;
 use crate::contour::{ContourError, TooManyVertices};
 use crate::edge::Crossings;
 use crate::geom::predicates::orient3d;

@@ -1,7 +1,7 @@
 //! Where the vertex of a sheet may lie: its cell, and in a cell with several sheets its side of the walls.
 
 use crate::contour::cell::{Case, Corner, Edge, MAX_SHEETS, SheetKind};
-use crate::contour::qef::HalfSpace;
+use crate::geom::quadric::HalfSpace;
 use crate::lattice::Axis;
 
 /// The most half-spaces of a region: the six sides of the cell and a wall per sheet.

@@ -1,10 +1,9 @@
 //! The crossings of the edges of a leaf's cells, in a plain array: each crossing is asked for by up to four cells.
 
 use crate::band::{LeafId, SignField};
-use crate::contour::beside::beside;
 use crate::contour::cell::Edge;
 use crate::edge::{Crossing, Crossings, EdgeId};
-use crate::lattice::{Axis, Ijk, LEAF_DIM, bits};
+use crate::lattice::{Axis, Ijk, LEAF_DIM, bits, facing_layer};
 
 /// Nodes along each axis: those of the leaf, and the first ones of the next.
 const SIDE: usize = LEAF_DIM as usize + 1;
@@ -51,7 +50,7 @@ impl<'a> LeafCrossings<'a> {
             let delta = [n >> 2, n >> 1 & 1, n & 1];
             let Some(other) = signs.neighbour(leaf, delta) else { continue };
             for axis in Axis::ALL.into_iter().filter(|&axis| delta[axis as usize] == 0) {
-                let wanted = beside(numbers.mask(other, axis), delta);
+                let wanted = facing_layer(numbers.mask(other, axis), delta);
                 for number in bits(&wanted) {
                     let EdgeId(id) = numbers.get(other, axis, number).expect("it is in the mask");
                     let local = Ijk::in_leaf(Ijk(delta.map(|d| LEAF_DIM * d)), number);

@@ -4,10 +4,11 @@ use super::cell_vertex::{self, Placement, sample};
 use super::cells::{CellCase, Cells};
 use super::leaf_crossings::LeafCrossings;
 use super::qef_batch::{Batch, LANES};
-use crate::band::{Ijk, LeafId, bits};
+use crate::band::LeafId;
 use crate::contour::cell::{Case, CaseTable, CornerSigns, constant_case};
 use crate::contour::feature::{FeatureVertex, Normals};
 use crate::contour::optimize::Wish;
+use crate::lattice::{Ijk, bits};
 
 /// What is found of a leaf's cells besides the positions of their vertices.
 #[derive(Debug, Default)]

@@ -9,13 +9,13 @@
 //! ```
 //!
 //! so the least point follows without an eigen decomposition: along v by a quotient, and in the plane across v by
-//! the two by two matrix, where its eigenvalues are above the [`CUTOFF`] of [`qef`](crate::contour::qef). What is not smooth is
+//! the two by two matrix, where its eigenvalues are above the [`CUTOFF`] of [`qef`](crate::geom::quadric). What is not smooth is
 //! left to [`cell_vertex`](super::cell_vertex).
 
 use super::cell_vertex::UNSURE;
 use crate::contour::feature::SPREAD;
-use crate::contour::qef::CUTOFF;
 use crate::geom::lanes::{F64s, M64s, P64s, in_lanes};
+use crate::geom::quadric::CUTOFF;
 use pulp::{Simd, WithSimd};
 
 type Point = [f64; 3];
@@ -229,7 +229,7 @@ impl<S: Simd> Plane<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contour::qef::Qef;
+    use crate::geom::quadric::Qef;
     use crate::geom::sym3::Sym3;
 
     fn random(state: &mut u64) -> f64 {

@@ -7,7 +7,7 @@
 
 use super::embedding::Embedding;
 use crate::contour::Precision;
-use crate::contour::qef::Qef;
+use crate::geom::quadric::Qef;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings, SHARE};
 use crate::thicken::SectionNormals;
