@@ -1,6 +1,6 @@
 //! A triangle in f32, to bound distances of eight points at a time.
 
-use crate::geom::lanes::{F32s, P32s};
+use crate::geom::simd::{F32s, Vec3F32s};
 use crate::geom::triangle::Triangle;
 use glam::{DVec3, Vec3};
 use pulp::Simd;
@@ -93,14 +93,14 @@ impl FlatTriangle {
     /// The distances of the points in `p`, one over them, and the unit vectors to the points from their closest points. All
     /// regions are computed and the right one is selected, so that the lanes run side by side.
     #[inline(always)]
-    pub fn distances<S: Simd>(&self, simd: S, p: P32s<S>) -> (F32s<S>, F32s<S>, P32s<S>) {
+    pub fn distances<S: Simd>(&self, simd: S, p: Vec3F32s<S>) -> (F32s<S>, F32s<S>, Vec3F32s<S>) {
         let (zero, one) = (F32s::splat(simd, 0.0), F32s::splat(simd, 1.0));
         let tiny = F32s::splat(simd, f32::MIN_POSITIVE);
         let mut squared = F32s::splat(simd, f32::INFINITY);
         let mut outermost = F32s::splat(simd, f32::NEG_INFINITY);
-        let mut beside = P32s::splat(simd, [0.0; 3]);
+        let mut beside = Vec3F32s::splat(simd, [0.0; 3]);
         for side in &self.sides {
-            let (along, outward) = (P32s::splat(simd, side.along), P32s::splat(simd, side.outward));
+            let (along, outward) = (Vec3F32s::splat(simd, side.along), Vec3F32s::splat(simd, side.outward));
             let position = along.dot_plus(p, F32s::splat(simd, side.position));
             let outside = outward.dot_plus(p, F32s::splat(simd, side.outside));
             outermost = outermost.max(outside);
@@ -110,7 +110,7 @@ impl FlatTriangle {
             squared = nearer.select(square, squared);
             beside = nearer.select_points(along.times_plus(beyond, outward.times(outside)), beside);
         }
-        let normal = P32s::splat(simd, self.normal);
+        let normal = Vec3F32s::splat(simd, self.normal);
         let height = normal.dot_plus(p, F32s::splat(simd, self.height));
         let squared = outermost.less(zero).select(zero, squared);
         let distance = height.times_plus(height, squared).sqrt();

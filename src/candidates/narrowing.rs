@@ -4,7 +4,7 @@ use super::PlaneBound;
 use super::flat::{EightPoints, FlatTriangle, ROUNDING};
 use super::nodes::{Nodes, Passing};
 use crate::filter::Block;
-use crate::geom::lanes::{F32s, P32s, in_lanes};
+use crate::geom::simd::{F32s, Vec3F32s, dispatch};
 use crate::lattice::Lattice;
 use crate::ssvh::{Hit, Ssvh};
 use glam::DVec3;
@@ -118,9 +118,9 @@ impl Narrowing {
         let Level { count, list, bounds, matters, nearest, .. } = &mut self.levels[depth];
         let list = &list[..*count];
         let bounds = at_least(bounds, *count);
-        *nearest = in_lanes(Measure { flats: &self.flats, list, centres, slack: self.slack, bounds });
+        *nearest = dispatch(Measure { flats: &self.flats, list, centres, slack: self.slack, bounds });
         let matters = at_least(matters, *count);
-        in_lanes(Reach { bounds, nearest, ends: ends(side), slack: self.slack, matters });
+        dispatch(Reach { bounds, nearest, ends: ends(side), slack: self.slack, matters });
     }
 
     /// What [`measure`](Self::measure) found nearest to the centre of half number `n`.
@@ -204,7 +204,7 @@ impl Narrowing {
         for (nodes, centres) in nodes.iter_mut().zip(centres) {
             *nodes = nodes.map(|x| x + centres[n]);
         }
-        in_lanes(Nodes {
+        dispatch(Nodes {
             flats: &self.flats,
             positions: &self.positions,
             list: block.list(),
@@ -276,9 +276,9 @@ impl WithSimd for Measure<'_> {
         let slacks = F32s::splat(simd, slack);
         let unknown = F32s::splat(simd, slack * REACH);
         for vector in 0..8 / F32s::<S>::COUNT {
-            let p = P32s::load(simd, centres, vector);
+            let p = Vec3F32s::load(simd, centres, vector);
             let mut nearest = F32s::splat(simd, f32::INFINITY);
-            let mut way = P32s::splat(simd, [0.0; 3]);
+            let mut way = Vec3F32s::splat(simd, [0.0; 3]);
             for (bound, &n) in bounds.iter_mut().zip(list) {
                 let (distance, inverse, direction) = flats[n as usize].distances(simd, p);
                 let nearer = distance.less(nearest);
@@ -332,7 +332,7 @@ impl WithSimd for Reach<'_> {
         for (bound, matters) in bounds.iter().zip(matters) {
             let mut bits = 0;
             for vector in 0..8 / F32s::<S>::COUNT {
-                let P32s { x, y, z } = P32s::load(simd, &bound.direction, vector);
+                let Vec3F32s { x, y, z } = Vec3F32s::load(simd, &bound.direction, vector);
                 let low = F32s::load(simd, &bound.low, vector);
                 // Nothing is less than itself.
                 let mut near = low.less(low);

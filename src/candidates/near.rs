@@ -1,6 +1,6 @@
 //! The list of a block, with bounds: most of its triangles are passed over for most of its points.
 
-use crate::geom::lanes::{F32s, F64s, P32s, in_lanes};
+use crate::geom::simd::{F32s, F64s, Vec3F32s, dispatch};
 use crate::ssvh::{Hit, NearestOfEight, Ssvh};
 use glam::DVec3;
 use pulp::{Simd, WithSimd};
@@ -91,7 +91,7 @@ impl Candidates<'_> {
         let mut most = f32::INFINITY;
         for (positions, packed) in self.positions.chunks(TOGETHER).zip(self.packed.chunks(TOGETHER)) {
             let mut bounds = [0.0; TOGETHER];
-            let least = in_lanes(LeastBounds { packed, points: &[x], bounds: &mut bounds });
+            let least = dispatch(LeastBounds { packed, points: &[x], bounds: &mut bounds });
             // The one with the least bound is nearest most of the time; after it few others matter.
             let first = bounds.iter().position(|&bound| bound == least).unwrap_or(0);
             bounds.swap(0, first);
@@ -135,7 +135,7 @@ impl Candidates<'_> {
         let most = ((expected / self.voxel) as f32).next_up() * ROUNDED + (LOSS - self.base);
         let near = &near[..count];
         let kernel = ClosestToEight { candidates: self, ssvh, exact: &exact, near, most };
-        let mut hits = in_lanes(kernel);
+        let mut hits = dispatch(kernel);
         for (hit, &p) in hits.iter_mut().zip(points).take(count) {
             if hit.distance_squared > expected * expected {
                 *hit = self.closest(ssvh, p);
@@ -191,7 +191,7 @@ fn least_of_eight<S: Simd>(
     let minus_one = F32s::splat(simd, -1.0);
     let mut all = F32s::splat(simd, f32::INFINITY);
     for vector in 0..8 / F32s::<S>::COUNT {
-        let directions = P32s {
+        let directions = Vec3F32s {
             x: F32s::bytes(simd, packed, vector, 0).times_plus(direction, minus_one),
             y: F32s::bytes(simd, packed, vector, 1).times_plus(direction, minus_one),
             z: F32s::bytes(simd, packed, vector, 2).times_plus(direction, minus_one),
@@ -199,7 +199,7 @@ fn least_of_eight<S: Simd>(
         let low = F32s::bytes(simd, packed, vector, 3) * step;
         let mut least = F32s::splat(simd, f32::INFINITY);
         for &point in points {
-            least = least.min(directions.dot_plus(P32s::splat(simd, point), low));
+            least = least.min(directions.dot_plus(Vec3F32s::splat(simd, point), low));
         }
         least.store(bounds, vector);
         all = all.min(least);
@@ -233,7 +233,7 @@ impl WithSimd for ClosestToEight<'_> {
                 if bound > most {
                     continue;
                 }
-                let triangle = ssvh.triangle_at(position).in_lanes(simd);
+                let triangle = ssvh.triangle_at(position).splat(simd);
                 for vector in 0..near.len().div_ceil(F64s::<S>::COUNT) {
                     nearest.offer(simd, &triangle, ssvh.id_at(position), exact, vector);
                 }

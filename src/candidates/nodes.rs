@@ -2,7 +2,7 @@
 
 use super::flat::{EightPoints, FlatTriangle};
 use super::near::PlaneBound;
-use crate::geom::lanes::{F32s, F64s, P32s};
+use crate::geom::simd::{F32s, F64s, Vec3F32s};
 use crate::ssvh::{Hit, NearestOfEight, Ssvh};
 use pulp::{Simd, WithSimd};
 
@@ -53,7 +53,7 @@ impl WithSimd for Nodes<'_> {
         let mut found = [0.0; 8];
         for vector in 0..8 / F32s::<S>::COUNT {
             // No node is farther from the mesh than from this point.
-            let from = P32s::load(simd, around, vector) + P32s::splat(simd, from);
+            let from = Vec3F32s::load(simd, around, vector) + Vec3F32s::splat(simd, from);
             let limit = from.dot(from).sqrt() + slacks;
             limit.store(&mut found, vector);
             let is_nearer = limit.less(F32s::splat(simd, least));
@@ -65,10 +65,10 @@ impl WithSimd for Nodes<'_> {
         let mut count = 0;
         for (&number, plane) in list.iter().zip(planes) {
             passing[count].number = number;
-            let (low, direction) = (F32s::splat(simd, plane.low), P32s::splat(simd, plane.direction));
+            let (low, direction) = (F32s::splat(simd, plane.low), Vec3F32s::splat(simd, plane.direction));
             let mut matters = false;
             for vector in 0..8 / F32s::<S>::COUNT {
-                let bound = direction.dot_plus(P32s::load(simd, around, vector), low);
+                let bound = direction.dot_plus(Vec3F32s::load(simd, around, vector), low);
                 matters |= bound.at_most(F32s::load(simd, &limits, vector)).any();
             }
             count += usize::from(matters);
@@ -77,7 +77,7 @@ impl WithSimd for Nodes<'_> {
         for Passing { number, distances } in passing.iter_mut() {
             let flat = &flats[*number as usize];
             for vector in 0..8 / F32s::<S>::COUNT {
-                let (distance, _, _) = flat.distances(simd, P32s::load(simd, nodes, vector));
+                let (distance, _, _) = flat.distances(simd, Vec3F32s::load(simd, nodes, vector));
                 distance.store(distances, vector);
                 F32s::load(simd, &limits, vector).min(distance + slacks).store(&mut limits, vector);
                 F32s::load(simd, &found, vector).min(distance).store(&mut found, vector);
@@ -91,7 +91,7 @@ impl WithSimd for Nodes<'_> {
         let mut nearest = NearestOfEight::NONE;
         for Passing { number, distances } in passing.iter() {
             let position = positions[*number as usize];
-            let triangle = ssvh.triangle_at(position).in_lanes(simd);
+            let triangle = ssvh.triangle_at(position).splat(simd);
             for vector in 0..8 / F64s::<S>::COUNT {
                 if any_within::<S>(distances, &limits, vector) {
                     nearest.offer(simd, &triangle, ssvh.id_at(position), exact, vector);

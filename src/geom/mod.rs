@@ -2,7 +2,7 @@
 
 pub mod aabb;
 pub mod box_tree;
-pub mod lanes;
+pub mod simd;
 pub mod predicates;
 pub mod quadric;
 pub mod roots;

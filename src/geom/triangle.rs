@@ -4,7 +4,7 @@
 //! triangle, and each edge region by its two end planes. No barycentric division takes part in the
 //! decision, so needles keep their accuracy.
 
-use super::lanes::{F64s, P64s};
+use super::simd::{F64s, Vec3F64s};
 use glam::DVec3;
 use pulp::Simd;
 
@@ -56,29 +56,29 @@ pub struct Triangle {
 
 /// A triangle for the distances of many points.
 #[derive(Clone, Copy, Debug)]
-pub struct TriangleInLanes<S: Simd> {
+pub struct SplatTriangle<S: Simd> {
     sides: [SideInLanes<S>; 3],
-    corner: P64s<S>,
-    normal: P64s<S>,
+    corner: Vec3F64s<S>,
+    normal: Vec3F64s<S>,
 }
 
 /// An edge of a triangle.
 #[derive(Clone, Copy, Debug)]
 struct SideInLanes<S: Simd> {
-    corner: P64s<S>,
+    corner: Vec3F64s<S>,
     /// In the triangle's plane, perpendicular to the edge.
-    outward: P64s<S>,
+    outward: Vec3F64s<S>,
     /// The end with the lower vertex number.
-    start: P64s<S>,
+    start: Vec3F64s<S>,
     /// The other one.
-    end: P64s<S>,
+    end: Vec3F64s<S>,
 }
 
-impl<S: Simd> TriangleInLanes<S> {
+impl<S: Simd> SplatTriangle<S> {
     /// Squared distances from the points in `p`, each the same value, bit for bit, as
     /// [`Triangle::distance_squared`] gives.
     #[inline(always)]
-    pub fn distances_squared(&self, simd: S, p: P64s<S>) -> F64s<S> {
+    pub fn distances_squared(&self, simd: S, p: Vec3F64s<S>) -> F64s<S> {
         let zero = F64s::splat(simd, 0.0);
         let far = F64s::splat(simd, f64::INFINITY);
         let [first, second, third] = &self.sides;
@@ -101,20 +101,20 @@ impl<S: Simd> TriangleInLanes<S> {
 
 impl<S: Simd> SideInLanes<S> {
     #[inline(always)]
-    fn new(a: P64s<S>, b: P64s<S>, normal: P64s<S>, is_flipped: bool) -> SideInLanes<S> {
+    fn new(a: Vec3F64s<S>, b: Vec3F64s<S>, normal: Vec3F64s<S>, is_flipped: bool) -> SideInLanes<S> {
         let (start, end) = if is_flipped { (b, a) } else { (a, b) };
         SideInLanes { corner: a, outward: (b - a).cross(normal), start, end }
     }
 
     /// See [`Triangle::outside`].
     #[inline(always)]
-    fn outside(&self, p: P64s<S>) -> F64s<S> {
+    fn outside(&self, p: Vec3F64s<S>) -> F64s<S> {
         (p - self.corner).dot(self.outward)
     }
 
     /// As `segment` computes them for one point.
     #[inline(always)]
-    fn distances_squared(&self, simd: S, p: P64s<S>) -> F64s<S> {
+    fn distances_squared(&self, simd: S, p: Vec3F64s<S>) -> F64s<S> {
         let edge = self.end - self.start;
         let length_squared = edge.dot(edge);
         let along = (p - self.start).dot(edge);
@@ -172,12 +172,12 @@ impl Triangle {
 
     /// The triangle with what does not depend on the point computed ahead.
     #[inline(always)]
-    pub fn in_lanes<S: Simd>(&self, simd: S) -> TriangleInLanes<S> {
-        let a = P64s::splat(simd, self.corners[0].to_array());
-        let b = P64s::splat(simd, self.corners[1].to_array());
-        let c = P64s::splat(simd, self.corners[2].to_array());
-        let normal = P64s::splat(simd, self.normal.to_array());
-        TriangleInLanes {
+    pub fn splat<S: Simd>(&self, simd: S) -> SplatTriangle<S> {
+        let a = Vec3F64s::splat(simd, self.corners[0].to_array());
+        let b = Vec3F64s::splat(simd, self.corners[1].to_array());
+        let c = Vec3F64s::splat(simd, self.corners[2].to_array());
+        let normal = Vec3F64s::splat(simd, self.normal.to_array());
+        SplatTriangle {
             sides: [
                 SideInLanes::new(a, b, normal, self.flipped & 1 == 1),
                 SideInLanes::new(b, c, normal, self.flipped >> 1 & 1 == 1),
@@ -363,22 +363,22 @@ mod tests {
             }
             let one_by_one = points.map(|p| triangle.distance_squared(p));
             let lanes = [points.map(|p| p.x), points.map(|p| p.y), points.map(|p| p.z)];
-            let here = crate::geom::lanes::in_lanes(InLanes(&triangle, &lanes));
-            let anywhere = pulp::WithSimd::with_simd(InLanes(&triangle, &lanes), pulp::Scalar);
+            let here = crate::geom::simd::dispatch(SquaredDistances(&triangle, &lanes));
+            let anywhere = pulp::WithSimd::with_simd(SquaredDistances(&triangle, &lanes), pulp::Scalar);
             assert_eq!(here.map(f64::to_bits), one_by_one.map(f64::to_bits), "{corners:?}");
             assert_eq!(here.map(f64::to_bits), anywhere.map(f64::to_bits), "{corners:?}");
         }
     }
 
-    struct InLanes<'a>(&'a Triangle, &'a [[f64; 8]; 3]);
+    struct SquaredDistances<'a>(&'a Triangle, &'a [[f64; 8]; 3]);
 
-    impl pulp::WithSimd for InLanes<'_> {
+    impl pulp::WithSimd for SquaredDistances<'_> {
         type Output = [f64; 8];
         fn with_simd<S: Simd>(self, simd: S) -> [f64; 8] {
             let mut out = [0.0; 8];
             for vector in 0..8 / F64s::<S>::COUNT {
-                let p = P64s::load(simd, self.1, vector);
-                self.0.in_lanes(simd).distances_squared(simd, p).store(&mut out, vector);
+                let p = Vec3F64s::load(simd, self.1, vector);
+                self.0.splat(simd).distances_squared(simd, p).store(&mut out, vector);
             }
             out
         }

@@ -2,7 +2,7 @@
 
 use super::query::{Around, Hit, Visit, descend};
 use super::{NearestOfEight, Ssvh};
-use crate::geom::lanes::in_lanes;
+use crate::geom::simd::dispatch;
 use crate::geom::triangle::Triangle;
 use glam::DVec3;
 use pulp::{Simd, WithSimd};
@@ -12,7 +12,7 @@ impl Ssvh {
     /// points is at most that point's limit, and of some that are a little farther. Gives up when `found` holds more than
     /// `most`.
     pub fn collect(&self, points: &[DVec3; 8], limits: &[f64; 8], most: usize, found: &mut Vec<u32>) {
-        in_lanes(Collect { tree: self, points, limits, most, found });
+        dispatch(Collect { tree: self, points, limits, most, found });
     }
 
     /// The triangle at a position of the hierarchy's order.
@@ -43,7 +43,7 @@ impl Ssvh {
     pub fn closest_of_to_eight(&self, positions: &[u32], points: &[DVec3; 8]) -> [Hit; 8] {
         assert!(!positions.is_empty(), "a list of triangles");
         let points = [points.map(|p| p.x), points.map(|p| p.y), points.map(|p| p.z)];
-        in_lanes(ClosestToEight { ssvh: self, positions, points: &points })
+        dispatch(ClosestToEight { ssvh: self, positions, points: &points })
     }
 }
 

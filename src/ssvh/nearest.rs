@@ -2,7 +2,7 @@
 
 use super::Ssvh;
 use super::query::{Hit, widened};
-use crate::geom::lanes::{F64s, P64s};
+use crate::geom::simd::{F64s, Vec3F64s};
 use crate::geom::triangle::TriangleInLanes;
 use pulp::Simd;
 
@@ -31,7 +31,7 @@ impl NearestOfEight {
         vector: usize,
     ) {
         let id = F64s::splat(simd, f64::from(id));
-        let found = triangle.distances_squared(simd, P64s::load(simd, points, vector));
+        let found = triangle.distances_squared(simd, Vec3F64s::load(simd, points, vector));
         let (nearest, ids) = (F64s::load(simd, &self.squared, vector), F64s::load(simd, &self.ids, vector));
         let before = found.less(nearest) | (found.at_most(nearest) & id.less(ids));
         before.select(found, nearest).store(&mut self.squared, vector);
@@ -47,7 +47,7 @@ impl NearestOfEight {
     /// Offers the triangle at a position of the hierarchy's order to all points.
     #[inline(always)]
     pub fn offer_to_all<S: Simd>(&mut self, simd: S, tree: &Ssvh, position: u32, points: &[[f64; 8]; 3]) {
-        let triangle = tree.triangle_at(position).in_lanes(simd);
+        let triangle = tree.triangle_at(position).splat(simd);
         for vector in 0..8 / F64s::<S>::COUNT {
             self.offer(simd, &triangle, tree.id_at(position), points, vector);
         }

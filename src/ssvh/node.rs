@@ -1,6 +1,6 @@
 //! A node: eight swept sphere volumes side by side, so that one pass bounds all eight.
 
-use crate::geom::lanes::{F32s, P32s};
+use crate::geom::simd::{F32s, Vec3F32s};
 use crate::geom::swept::{Sphere, Swept};
 use glam::{DVec3, Vec3};
 use pulp::Simd;
@@ -88,13 +88,13 @@ impl Node {
     /// inside, exact but for rounding of a few 2^-24 of the distances involved; infinite if empty.
     #[inline(always)]
     pub(super) fn distances<S: Simd>(&self, simd: S, q: Vec3) -> [f32; WIDTH] {
-        let q = P32s::splat(simd, q.to_array());
+        let q = Vec3F32s::splat(simd, q.to_array());
         let mut distances = [0.0; WIDTH];
         for vector in 0..WIDTH / F32s::<S>::COUNT {
-            let (u, v) = (P32s::load(simd, &self.u, vector), P32s::load(simd, &self.v, vector));
+            let (u, v) = (Vec3F32s::load(simd, &self.u, vector), Vec3F32s::load(simd, &self.v, vector));
             let [half_u, half_v] = &self.half;
             let half = [F32s::load(simd, half_u, vector), F32s::load(simd, half_v, vector)];
-            let from = q - P32s::load(simd, &self.centre, vector);
+            let from = q - Vec3F32s::load(simd, &self.centre, vector);
             let distance = core_distance(simd, from, u, v, half);
             (distance - F32s::load(simd, &self.radius, vector)).store(&mut distances, vector);
         }
@@ -111,14 +111,15 @@ impl Node {
         points: &[[f32; 8]; 3],
         limits: &[f32; 8],
     ) -> bool {
-        let centre = P32s::splat(simd, [self.centre[0][slot], self.centre[1][slot], self.centre[2][slot]]);
-        let u = P32s::splat(simd, [self.u[0][slot], self.u[1][slot], self.u[2][slot]]);
-        let v = P32s::splat(simd, [self.v[0][slot], self.v[1][slot], self.v[2][slot]]);
+        let centre =
+            Vec3F32s::splat(simd, [self.centre[0][slot], self.centre[1][slot], self.centre[2][slot]]);
+        let u = Vec3F32s::splat(simd, [self.u[0][slot], self.u[1][slot], self.u[2][slot]]);
+        let v = Vec3F32s::splat(simd, [self.v[0][slot], self.v[1][slot], self.v[2][slot]]);
         let half = [F32s::splat(simd, self.half[0][slot]), F32s::splat(simd, self.half[1][slot])];
         let radius = F32s::splat(simd, self.radius[slot]);
         let mut any = false;
         for vector in 0..8 / F32s::<S>::COUNT {
-            let from = P32s::load(simd, points, vector) - centre;
+            let from = Vec3F32s::load(simd, points, vector) - centre;
             let distance = core_distance(simd, from, u, v, half) - radius;
             any |= distance.at_most(F32s::load(simd, limits, vector)).any();
         }
@@ -130,9 +131,9 @@ impl Node {
 #[inline(always)]
 fn core_distance<S: Simd>(
     simd: S,
-    from: P32s<S>,
-    u: P32s<S>,
-    v: P32s<S>,
+    from: Vec3F32s<S>,
+    u: Vec3F32s<S>,
+    v: Vec3F32s<S>,
     [half_u, half_v]: [F32s<S>; 2],
 ) -> F32s<S> {
     let zero = F32s::splat(simd, 0.0);

@@ -2,7 +2,7 @@
 
 use super::node::{Level, Node, WIDTH};
 use super::{NearestOfEight, Ssvh};
-use crate::geom::lanes::in_lanes;
+use crate::geom::simd::dispatch;
 use glam::{DVec3, Vec3};
 use pulp::{Simd, WithSimd};
 
@@ -41,21 +41,21 @@ impl Ssvh {
     /// The same as [`closest`](Self::closest), faster when `guess` is a triangle close to `p`.
     pub fn closest_from(&self, p: DVec3, guess: u32) -> Hit {
         let distance_squared = self.triangles[self.position(guess)].distance_squared(p);
-        in_lanes(Improve { tree: self, p, best: Hit { triangle: guess, distance_squared } })
+        dispatch(Improve { tree: self, p, best: Hit { triangle: guess, distance_squared } })
     }
 
     /// The closest triangle if its distance is at most `bound`.
     pub fn closest_within(&self, p: DVec3, bound: f64) -> Option<Hit> {
         // No triangle has this number, so a real one at exactly the bound comes before it.
         let best = Hit { triangle: u32::MAX, distance_squared: bound * bound };
-        let hit = in_lanes(Improve { tree: self, p, best });
+        let hit = dispatch(Improve { tree: self, p, best });
         (hit.triangle != u32::MAX).then_some(hit)
     }
 
     /// The closest triangles to eight points, each as [`closest`](Self::closest) finds it, in one descent:
     /// it pays when the points are about as near to each other as triangles are large, or nearer.
     pub fn closest_to_eight(&self, points: &[DVec3; 8], guess: u32) -> [Hit; 8] {
-        in_lanes(ImproveEight { tree: self, points, guess })
+        dispatch(ImproveEight { tree: self, points, guess })
     }
 
     /// Rounding of a bound for points whose coordinates relative to the centre are at most `sizes`.

@@ -1,6 +1,6 @@
 //! Vectors of floats, as wide as the machine has them, with the operators of numbers.
 //!
-//! [`in_lanes`] runs a kernel with the widest instructions that the machine has of those that the program was built for,
+//! [`dispatch`] runs a kernel with the widest instructions that the machine has of those that the program was built for,
 //! picked at run time. Every lane takes the same operations in the same order as a number would, none fused, so the
 //! results do not depend on the machine; but for f32 and the operations that say so, which are for bounds only: what is
 //! within their rounding is decided in f64. Kernels must not use closures, which would not be compiled for those
@@ -11,7 +11,7 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
 
 /// Runs a kernel.
 #[inline(always)]
-pub fn in_lanes<K: WithSimd>(kernel: K) -> K::Output {
+pub fn dispatch<K: WithSimd>(kernel: K) -> K::Output {
     Arch::new().dispatch(kernel)
 }
 
@@ -146,7 +146,7 @@ macro_rules! lanes {
 
 lanes!(
     F32s,
-    M32s,
+    Mask32s,
     f32,
     f32s,
     m32s,
@@ -170,7 +170,7 @@ lanes!(
 );
 lanes!(
     F64s,
-    M64s,
+    Mask64s,
     f64,
     f64s,
     m64s,
@@ -277,8 +277,8 @@ macro_rules! points {
     };
 }
 
-points!(P32s, F32s, f32);
-points!(P64s, F64s, f64);
+points!(Vec3F32s, F32s, f32);
+points!(Vec3F64s, F64s, f64);
 
 impl<S: Simd> F32s<S> {
     /// One of the vectors that eight words fill: of each word byte number `n`, from the lowest on, as a number.
@@ -311,7 +311,7 @@ impl<S: Simd> F32s<S> {
     }
 }
 
-impl<S: Simd> P32s<S> {
+impl<S: Simd> Vec3F32s<S> {
     /// The scalar products, and more. May be fused: see the module.
     #[inline(always)]
     pub fn dot_plus(self, other: Self, more: F32s<S>) -> F32s<S> {
@@ -321,7 +321,7 @@ impl<S: Simd> P32s<S> {
     /// The vectors times numbers, and more. May be fused: see the module.
     #[inline(always)]
     pub fn times_plus(self, factors: F32s<S>, more: Self) -> Self {
-        P32s {
+        Vec3F32s {
             x: self.x.times_plus(factors, more.x),
             y: self.y.times_plus(factors, more.y),
             z: self.z.times_plus(factors, more.z),
@@ -329,7 +329,7 @@ impl<S: Simd> P32s<S> {
     }
 }
 
-impl<S: Simd> M32s<S> {
+impl<S: Simd> Mask32s<S> {
     /// Of the vectors that eight numbers fill, a bit for each lane in which it holds.
     #[inline(always)]
     pub fn bits(self, vector: usize) -> u8 {
@@ -340,16 +340,16 @@ impl<S: Simd> M32s<S> {
 
     /// Of two sets of points those that the mask says.
     #[inline(always)]
-    pub fn select_points(self, yes: P32s<S>, no: P32s<S>) -> P32s<S> {
-        P32s { x: self.select(yes.x, no.x), y: self.select(yes.y, no.y), z: self.select(yes.z, no.z) }
+    pub fn select_points(self, yes: Vec3F32s<S>, no: Vec3F32s<S>) -> Vec3F32s<S> {
+        Vec3F32s { x: self.select(yes.x, no.x), y: self.select(yes.y, no.y), z: self.select(yes.z, no.z) }
     }
 }
 
-impl<S: Simd> M64s<S> {
+impl<S: Simd> Mask64s<S> {
     /// Of two sets of points those that the mask says.
     #[inline(always)]
-    pub fn select_points(self, yes: P64s<S>, no: P64s<S>) -> P64s<S> {
-        P64s { x: self.select(yes.x, no.x), y: self.select(yes.y, no.y), z: self.select(yes.z, no.z) }
+    pub fn select_points(self, yes: Vec3F64s<S>, no: Vec3F64s<S>) -> Vec3F64s<S> {
+        Vec3F64s { x: self.select(yes.x, no.x), y: self.select(yes.y, no.y), z: self.select(yes.z, no.z) }
     }
 }
 
@@ -389,7 +389,7 @@ mod tests {
             std::array::from_fn(|n| 0x9e37_79b9u32.wrapping_mul(n as u32 + 1) | 0xff << (4 * n));
         for limit in [f32::NEG_INFINITY, -0.5, 2.5, f32::INFINITY] {
             let kernel = || Kernel { numbers: &numbers, limit, words: &words };
-            let here = in_lanes(kernel());
+            let here = dispatch(kernel());
             assert_eq!(here, kernel().with_simd(pulp::Scalar));
             let (bits, bytes, least) = here;
             assert_eq!(least, f32::NEG_INFINITY);
