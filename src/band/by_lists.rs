@@ -92,7 +92,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
         let exact = side.is_none().then(|| {
             let points = halves.map(|half| half.centre(lattice));
             let ssvh = self.filter.distance.ssvh();
-            let hits = ssvh.closest_of_to_eight(work.narrowing.list(depth), &points);
+            let hits = ssvh.closest8_among(work.narrowing.list(depth), &points);
             let signed = |n: usize| self.filter.distance.from_triangle(points[n], hits[n].triangle).distance;
             std::array::from_fn::<f64, 8, _>(signed)
         });

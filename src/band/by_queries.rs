@@ -74,7 +74,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
         let side = self.side_around(block, centre);
         let nodes = block.children().map(|b| b.origin);
         let points = nodes.map(|node| DVec3::from(self.filter.lattice.world_from_index(node)));
-        let hits = self.filter.distance.ssvh().closest_to_eight(&points, triangle);
+        let hits = self.filter.distance.ssvh().closest8(&points, triangle);
         self.set_nodes(&nodes, &points, &hits, side, leaf, statistics);
     }
 }

@@ -1,7 +1,7 @@
 //! The list of a block, with bounds: most of its triangles are passed over for most of its points.
 
 use crate::geom::simd::{F32s, F64s, Vec3F32s, dispatch};
-use crate::ssvh::{Hit, NearestOfEight, Ssvh};
+use crate::ssvh::{Closest8, Hit, Ssvh};
 use glam::DVec3;
 use pulp::{Simd, WithSimd};
 
@@ -123,18 +123,12 @@ impl Candidates<'_> {
     /// The same for the first `count` of eight points, whose distances are expected to be at most `expected`, in model
     /// units: only triangles that can be that near are looked at, and all where there is none. What is returned for
     /// other points means nothing.
-    pub fn closest_to_eight(
-        &self,
-        ssvh: &Ssvh,
-        points: &[DVec3; 8],
-        count: usize,
-        expected: f64,
-    ) -> [Hit; 8] {
+    pub fn closest8(&self, ssvh: &Ssvh, points: &[DVec3; 8], count: usize, expected: f64) -> [Hit; 8] {
         let exact = [points.map(|p| p.x), points.map(|p| p.y), points.map(|p| p.z)];
         let near = points.map(|p| self.local(p));
         let most = ((expected / self.voxel) as f32).next_up() * ROUNDED + (LOSS - self.base);
         let near = &near[..count];
-        let kernel = ClosestToEight { candidates: self, ssvh, exact: &exact, near, most };
+        let kernel = Closest8InBlock { candidates: self, ssvh, exact: &exact, near, most };
         let mut hits = dispatch(kernel);
         for (hit, &p) in hits.iter_mut().zip(points).take(count) {
             if hit.distance_squared > expected * expected {
@@ -169,24 +163,19 @@ impl WithSimd for LeastBounds<'_> {
         let bounds = bounds.as_chunks_mut().0;
         let mut least = F32s::splat(simd, f32::INFINITY);
         for (packed, bounds) in by_eight.iter().zip(bounds.iter_mut()) {
-            least = least.min(least_of_eight(simd, packed, points, bounds));
+            least = least.min(least_of_8(simd, packed, points, bounds));
         }
         if let Some(&last) = rest.last() {
             let mut filled = [last; 8];
             filled[..rest.len()].copy_from_slice(rest);
-            least = least.min(least_of_eight(simd, &filled, points, &mut bounds[by_eight.len()]));
+            least = least.min(least_of_8(simd, &filled, points, &mut bounds[by_eight.len()]));
         }
         least.least()
     }
 }
 
 #[inline(always)]
-fn least_of_eight<S: Simd>(
-    simd: S,
-    packed: &[u32; 8],
-    points: &[[f32; 3]],
-    bounds: &mut [f32; 8],
-) -> F32s<S> {
+fn least_of_8<S: Simd>(simd: S, packed: &[u32; 8], points: &[[f32; 3]], bounds: &mut [f32; 8]) -> F32s<S> {
     let (direction, step) = (F32s::splat(simd, 1.0 / DIRECTIONS), F32s::splat(simd, 1.0 / STEPS));
     let minus_one = F32s::splat(simd, -1.0);
     let mut all = F32s::splat(simd, f32::INFINITY);
@@ -207,7 +196,7 @@ fn least_of_eight<S: Simd>(
     all
 }
 
-struct ClosestToEight<'a> {
+struct Closest8InBlock<'a> {
     candidates: &'a Candidates<'a>,
     ssvh: &'a Ssvh,
     exact: &'a [[f64; 8]; 3],
@@ -217,13 +206,13 @@ struct ClosestToEight<'a> {
     most: f32,
 }
 
-impl WithSimd for ClosestToEight<'_> {
+impl WithSimd for Closest8InBlock<'_> {
     type Output = [Hit; 8];
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [Hit; 8] {
-        let ClosestToEight { candidates, ssvh, exact, near, most } = self;
-        let mut nearest = NearestOfEight::NONE;
+        let Closest8InBlock { candidates, ssvh, exact, near, most } = self;
+        let mut nearest = Closest8::NONE;
         let mut bounds = [0.0; TOGETHER];
         for (positions, packed) in
             candidates.positions.chunks(TOGETHER).zip(candidates.packed.chunks(TOGETHER))

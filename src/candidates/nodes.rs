@@ -3,7 +3,7 @@
 use super::flat::{EightPoints, FlatTriangle};
 use super::near::PlaneBound;
 use crate::geom::simd::{F32s, F64s, Vec3F32s};
-use crate::ssvh::{Hit, NearestOfEight, Ssvh};
+use crate::ssvh::{Closest8, Hit, Ssvh};
 use pulp::{Simd, WithSimd};
 
 /// A triangle whose bound comes near enough to a node.
@@ -88,7 +88,7 @@ impl WithSimd for Nodes<'_> {
             let limit = F32s::load(simd, &limits, vector) + slacks;
             is_farther.select(nobody, limit).store(&mut limits, vector);
         }
-        let mut nearest = NearestOfEight::NONE;
+        let mut nearest = Closest8::NONE;
         for Passing { number, distances } in passing.iter() {
             let position = positions[*number as usize];
             let triangle = ssvh.triangle_at(position).splat(simd);

@@ -25,7 +25,7 @@ fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]
         for share in shares {
             let node = DVec3::from(block.origin.0.map(f64::from));
             let p = lattice.voxel * (node + f64::from(block.side) * DVec3::from(*share));
-            let eight = ssvh.closest_of_to_eight(&list, &[p; 8]);
+            let eight = ssvh.closest8_among(&list, &[p; 8]);
             assert!(eight.iter().all(|hit| *hit == ssvh.closest(p)), "{block:?} {p}");
         }
     };
@@ -74,7 +74,7 @@ fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]
                     let squared = ssvh.closest(points[0]).distance_squared;
                     // Nearer than expected, as near, and farther.
                     for expected in [f64::INFINITY, squared.sqrt(), 0.0] {
-                        let hits = near.closest_to_eight(&ssvh, &points, count, expected);
+                        let hits = near.closest8(&ssvh, &points, count, expected);
                         for (hit, &p) in hits.iter().zip(&points).take(count) {
                             assert_eq!(*hit, ssvh.closest(p), "{quarter:?} {p}");
                             assert_eq!(near.closest(&ssvh, p), *hit);

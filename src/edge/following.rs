@@ -57,8 +57,8 @@ impl Solver<'_> {
         // The triangle that was solved for is that near, and so is the closest one.
         let expected = self.r.abs() + TOLERANCE * self.voxel;
         let hits = (proposed > 0).then(|| match near {
-            Some(near) => near.closest_to_eight(ssvh, &points, proposed, expected),
-            None => ssvh.closest_to_eight(&points, guess),
+            Some(near) => near.closest8(ssvh, &points, proposed, expected),
+            None => ssvh.closest8(&points, guess),
         });
         let mut answers = points.iter().zip(hits.iter().flatten());
         for ((edge, position), root) in edges.iter().zip(positions).zip(roots) {

@@ -84,7 +84,7 @@ impl Filter<'_> {
         let children = block.children();
         let centres = children.map(|child| child.centre(self.lattice));
         let hits = if children[0].side <= TOGETHER {
-            self.distance.ssvh().closest_to_eight(&centres, triangle)
+            self.distance.ssvh().closest8(&centres, triangle)
         } else {
             centres.map(|centre| self.distance.ssvh().closest_from(centre, triangle))
         };

@@ -1,7 +1,7 @@
 //! Lists of triangles: all that come near enough to one of eight points, and the closest of a list.
 
 use super::query::{Around, Hit, Visit, descend};
-use super::{NearestOfEight, Ssvh};
+use super::{Closest8, Ssvh};
 use crate::geom::simd::dispatch;
 use crate::geom::triangle::Triangle;
 use glam::DVec3;
@@ -40,27 +40,27 @@ impl Ssvh {
     ///
     /// # Panics
     /// When there are none.
-    pub fn closest_of_to_eight(&self, positions: &[u32], points: &[DVec3; 8]) -> [Hit; 8] {
+    pub fn closest8_among(&self, positions: &[u32], points: &[DVec3; 8]) -> [Hit; 8] {
         assert!(!positions.is_empty(), "a list of triangles");
         let points = [points.map(|p| p.x), points.map(|p| p.y), points.map(|p| p.z)];
-        dispatch(ClosestToEight { ssvh: self, positions, points: &points })
+        dispatch(Closest8Among { ssvh: self, positions, points: &points })
     }
 }
 
 /// The closest of a list to eight points.
-struct ClosestToEight<'a> {
+struct Closest8Among<'a> {
     ssvh: &'a Ssvh,
     positions: &'a [u32],
     points: &'a [[f64; 8]; 3],
 }
 
-impl WithSimd for ClosestToEight<'_> {
+impl WithSimd for Closest8Among<'_> {
     type Output = [Hit; 8];
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [Hit; 8] {
-        let ClosestToEight { ssvh, positions, points } = self;
-        let mut nearest = NearestOfEight::NONE;
+        let Closest8Among { ssvh, positions, points } = self;
+        let mut nearest = Closest8::NONE;
         for &position in positions {
             nearest.offer_to_all(simd, ssvh, position, points);
         }

@@ -18,6 +18,6 @@ mod tests;
 mod validate;
 
 pub use build::Ssvh;
-pub use nearest::NearestOfEight;
+pub use nearest::Closest8;
 pub use query::Hit;
 pub use validate::InvalidSsvh;

@@ -8,16 +8,16 @@ use pulp::Simd;
 
 /// The best so far of eight points.
 #[derive(Clone, Copy, Debug)]
-pub struct NearestOfEight {
+pub struct Closest8 {
     /// Squared distances; infinite where nothing was offered yet.
     pub squared: [f64; 8],
     /// Triangle numbers: all 32-bit numbers are numbers of 64-bit floats.
     ids: [f64; 8],
 }
 
-impl NearestOfEight {
+impl Closest8 {
     /// Before anything is offered.
-    pub const NONE: NearestOfEight = NearestOfEight { squared: [f64::INFINITY; 8], ids: [f64::INFINITY; 8] };
+    pub const NONE: Closest8 = Closest8 { squared: [f64::INFINITY; 8], ids: [f64::INFINITY; 8] };
 
     /// Offers the triangle with number `id` to the points of one vector. Of equally near ones the lowest number stays,
     /// as in [`Hit::before`].
@@ -40,8 +40,8 @@ impl NearestOfEight {
 
     /// The same with `id` for what is infinitely far, so that there is a triangle whatever is offered.
     #[inline(always)]
-    pub(super) fn unless_nearer(id: u32) -> NearestOfEight {
-        NearestOfEight { ids: [f64::from(id); 8], ..NearestOfEight::NONE }
+    pub(super) fn unless_nearer(id: u32) -> Closest8 {
+        Closest8 { ids: [f64::from(id); 8], ..Closest8::NONE }
     }
 
     /// Offers the triangle at a position of the hierarchy's order to all points.

@@ -1,7 +1,7 @@
 //! Closest-triangle queries, for one point and for eight that are near each other.
 
 use super::node::{Level, Node, WIDTH};
-use super::{NearestOfEight, Ssvh};
+use super::{Closest8, Ssvh};
 use crate::geom::simd::dispatch;
 use glam::{DVec3, Vec3};
 use pulp::{Simd, WithSimd};
@@ -54,8 +54,8 @@ impl Ssvh {
 
     /// The closest triangles to eight points, each as [`closest`](Self::closest) finds it, in one descent:
     /// it pays when the points are about as near to each other as triangles are large, or nearer.
-    pub fn closest_to_eight(&self, points: &[DVec3; 8], guess: u32) -> [Hit; 8] {
-        dispatch(ImproveEight { tree: self, points, guess })
+    pub fn closest8(&self, points: &[DVec3; 8], guess: u32) -> [Hit; 8] {
+        dispatch(Improve8 { tree: self, points, guess })
     }
 
     /// Rounding of a bound for points whose coordinates relative to the centre are at most `sizes`.
@@ -116,20 +116,20 @@ pub(super) fn widened(squared: f64, slack: f64) -> f32 {
 }
 
 /// The closest triangles to eight points.
-struct ImproveEight<'a> {
+struct Improve8<'a> {
     tree: &'a Ssvh,
     points: &'a [DVec3; 8],
     guess: u32,
 }
 
-impl WithSimd for ImproveEight<'_> {
+impl WithSimd for Improve8<'_> {
     type Output = [Hit; 8];
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [Hit; 8] {
-        let ImproveEight { tree, points, guess } = self;
+        let Improve8 { tree, points, guess } = self;
         let around = Around::new(tree, points);
-        let mut closest = Closest { tree, around: &around, nearest: NearestOfEight::unless_nearer(guess) };
+        let mut closest = Closest { tree, around: &around, nearest: Closest8::unless_nearer(guess) };
         let mut limits = [0.0; 8];
         closest.visit(simd, tree.position(guess) as u32, &mut limits);
         descend(simd, tree, &around, limits, &mut closest);
@@ -141,7 +141,7 @@ impl WithSimd for ImproveEight<'_> {
 struct Closest<'a> {
     tree: &'a Ssvh,
     around: &'a Around,
-    nearest: NearestOfEight,
+    nearest: Closest8,
 }
 
 impl Visit for Closest<'_> {

@@ -124,7 +124,7 @@ fn eight_points_at_once_find_the_same_as_one_at_a_time() {
             let points = std::array::from_fn(|_| {
                 centre + spread * DVec3::from(std::array::from_fn(|_| random(&mut state) - 0.5))
             });
-            let hits = tree.closest_to_eight(&points, (n % tree.len()) as u32);
+            let hits = tree.closest8(&points, (n % tree.len()) as u32);
             for (p, hit) in points.into_iter().zip(hits) {
                 assert_eq!(hit, brute_force(&tree, p), "{p}");
             }

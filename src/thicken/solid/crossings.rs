@@ -151,7 +151,7 @@ impl<'a> LeafNodes<'a> {
             }
             // But for rounding.
             let expected = most.sqrt() * (1.0 + 1e-12);
-            let hits = near.map(|near| near.closest_to_eight(distance.ssvh(), &points, count, expected));
+            let hits = near.map(|near| near.closest8(distance.ssvh(), &points, count, expected));
             for (k, (_, search)) in searches.iter_mut().enumerate() {
                 let (t, p) = asked[k];
                 let sample = match &hits {
