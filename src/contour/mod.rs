@@ -278,7 +278,7 @@ pub(crate) fn contour_by_edge(
             triangulate(&cells, &faces, vertices, CutMethod::default(), &phase)?;
         let mut mesh = mesh.into_ordered().mesh;
         if crossings.numbers.is_open() {
-            mesh.drop_idle_vertices(0);
+            mesh.drop_unreferenced_vertices(0);
         }
         Ok((mesh, sizes))
     })

@@ -20,7 +20,7 @@ impl TriMesh {
     }
 
     /// Drops vertices from number `first` on that no triangle has.
-    pub(crate) fn drop_idle_vertices(&mut self, first: usize) {
+    pub(crate) fn drop_unreferenced_vertices(&mut self, first: usize) {
         let mut used = vec![false; self.vertices.len()];
         self.triangles.as_flattened().iter().for_each(|&v| used[v as usize] = true);
         let mut numbers: Vec<u32> = (0..self.vertices.len() as u32).collect();

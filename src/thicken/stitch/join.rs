@@ -277,7 +277,7 @@ pub(crate) fn stitch(
         number <= patch_count || open.kept[number - 1 - patch_count]
     });
     mesh.triangles.extend(strip);
-    mesh.drop_idle_vertices(first as usize);
+    mesh.drop_unreferenced_vertices(first as usize);
     let kept = open.edges.iter().zip(&open.kept).filter(|&(_, &kept)| kept);
     let edges = kept.map(|(&edge, _)| edge).collect();
     Ok(Ok(Stitched { mesh, edges }))
