@@ -39,14 +39,14 @@ impl LeafSolver<'_> {
     pub(super) fn solve(&self, id: LeafId, samples: &mut [Crossing]) -> EdgeStatistics {
         let mut statistics = EdgeStatistics::default();
         let leaf = self.leaf(id);
-        if let (RootMethod::Following, Some(lists)) = (self.method, &self.near.lists) {
+        if let (RootMethod::TriangleIteration, Some(lists)) = (self.method, &self.near.lists) {
             self.by_blocks(&leaf, lists, samples, &mut statistics);
             return statistics;
         }
         for ((axis, number), sample) in self.numbers.in_leaf(id).zip(samples) {
             let edge = self.edge(&leaf, axis, number);
             let root = match self.method {
-                RootMethod::Following => self.solver.follow(&edge, &mut statistics),
+                RootMethod::TriangleIteration => self.solver.iterate(&edge, &mut statistics),
                 RootMethod::Hybrid => self.solver.solve(&edge, &mut statistics),
                 RootMethod::Bisection { tolerance } => {
                     bisection::solve(&self.solver, &edge, tolerance, &mut statistics)
@@ -85,7 +85,7 @@ impl LeafSolver<'_> {
                     }),
                 );
                 let mut roots = [unsolved; 8];
-                self.solver.follow_together(&together, near, statistics, &mut roots);
+                self.solver.iterate8(&together, near, statistics, &mut roots);
                 for ((edge, root), &(axis, number)) in together.iter().zip(roots).zip(edges) {
                     let id = self.numbers.get(leaf.id, axis, number).expect("an intersected edge");
                     samples[(id.0 - first) as usize] = edge.crossing(root);

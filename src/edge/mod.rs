@@ -5,7 +5,7 @@
 mod analytic;
 mod bisection;
 mod crossings;
-mod following;
+mod triangle_iteration;
 mod hybrid;
 mod leaf;
 mod regions;

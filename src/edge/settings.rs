@@ -8,7 +8,7 @@ use crate::lattice::{Lattice, Slab};
 pub enum RootMethod {
     /// In closed form on the triangle that is closest where the last one had its root.
     #[default]
-    Following,
+    TriangleIteration,
     /// The method of \[LW11\]: in closed form where both ends share a triangle, with halving between attempts.
     Hybrid,
     /// By halving only, until abs(phi) is at most `tolerance` voxels: the measure that Table V of \[LW11\]

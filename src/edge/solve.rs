@@ -24,7 +24,7 @@ pub fn solve(
     near: &NearTriangles,
     run: &RunSettings,
 ) -> Result<(Crossings, EdgeStatistics), Cancelled> {
-    let settings = EdgeSettings { lattice, r, method: RootMethod::Following, slab: Slab::WHOLE };
+    let settings = EdgeSettings { lattice, r, method: RootMethod::TriangleIteration, slab: Slab::WHOLE };
     solve_by(distance, &settings, signs, numbers, near, run)
 }
 

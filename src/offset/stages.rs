@@ -37,7 +37,7 @@ pub(super) fn on_slab(
     if numbers.is_empty() {
         return Ok(None);
     }
-    let edge_settings = EdgeSettings { lattice, r, method: RootMethod::Following, slab };
+    let edge_settings = EdgeSettings { lattice, r, method: RootMethod::TriangleIteration, slab };
     let (crossings, edges) = solve_by(distance, &edge_settings, &signs, numbers, &near, run)?;
     statistics.edges += edges;
     let suspects = unseen::suspects(distance, r, lattice, slab, &signs, &near, run)?;

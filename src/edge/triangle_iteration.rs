@@ -24,14 +24,14 @@ struct Proposal {
 
 impl Solver<'_> {
     /// The intersection of `edge`.
-    pub(super) fn follow(&self, edge: &GridEdge, statistics: &mut EdgeStatistics) -> Root {
+    pub(super) fn iterate(&self, edge: &GridEdge, statistics: &mut EdgeStatistics) -> Root {
         let tried = self.first(edge).map(|p| self.end(edge, p.t, p.triangle, statistics));
-        self.follow_from(edge, tried, statistics)
+        self.iterate_from(edge, tried, statistics)
     }
 
-    /// The intersections of up to eight edges that are near each other, each as [`follow`](Self::follow) finds it. What they
+    /// The intersections of up to eight edges that are near each other, each as [`iterate`](Self::iterate) finds it. What they
     /// try first is verified together, by the candidates that they have in common, if any.
-    pub(super) fn follow_together(
+    pub(super) fn iterate8(
         &self,
         edges: &[GridEdge],
         near: Option<Candidates<'_>>,
@@ -66,7 +66,7 @@ impl Solver<'_> {
                 let (&p, hit) = answers.next()?;
                 Some(End { t, sample: self.distance.from_triangle(p, hit.triangle) })
             });
-            *root = self.follow_from(edge, tried, statistics);
+            *root = self.iterate_from(edge, tried, statistics);
         }
     }
 
@@ -86,7 +86,7 @@ impl Solver<'_> {
         Some(low + s * (high - low))
     }
 
-    fn follow_from(&self, edge: &GridEdge, mut tried: Option<End>, statistics: &mut EdgeStatistics) -> Root {
+    fn iterate_from(&self, edge: &GridEdge, mut tried: Option<End>, statistics: &mut EdgeStatistics) -> Root {
         statistics.intersected += 1;
         let (mut low, mut high) = (0.0, 1.0);
         for attempts in 0..MOST {
