@@ -2,9 +2,9 @@
 //! share a triangle, verified by a query, bisection otherwise, with a new analytic attempt after each
 //! subdivision.
 
-use super::shared::shared_triangle;
+use super::shared_triangle::shared_triangle;
 use super::statistics::{COUNTED_SUBDIVISIONS, EdgeStatistics};
-use super::{Crossing, analytic};
+use super::{Crossing, closed_form};
 use crate::candidates::Candidates;
 use crate::distance::{Sample, SignedDistance};
 use glam::DVec3;
@@ -141,7 +141,7 @@ impl Solver<'_> {
     fn propose(&self, edge: &GridEdge, Bracket { low, high }: &Bracket) -> Option<Proposal> {
         let triangle = shared_triangle(self.distance, &low.sample, &high.sample)?;
         let ends = [self.at(edge, low.t), self.at(edge, high.t)];
-        let s = analytic::root(self.distance.ssvh().triangle(triangle), ends[0], ends[1], self.r)?;
+        let s = closed_form::root(self.distance.ssvh().triangle(triangle), ends[0], ends[1], self.r)?;
         Some(Proposal { t: low.t + s * (high.t - low.t), triangle })
     }
 

@@ -1,18 +1,24 @@
 //! Intersections of grid edges with the offset surface (\[LW11\] section V).
 //!
+//! ```text
+//!  solve -> leaf_edges -> triangle_iteration -> closed_form -> triangle_regions      crossings
+//!                              | no root           ^ Remarks 5, 6, 7
+//!                              `-> hybrid -> shared_triangle
+//! ```
+//!
 //! Promised for closed input: every crossing lies within 1e-6 voxels of the offset surface.
 
-mod analytic;
-mod bisection;
+mod settings;
+mod statistics;
 mod crossings;
+mod solve;
+mod leaf_edges;
 mod triangle_iteration;
 mod hybrid;
-mod leaf;
-mod regions;
-mod settings;
-mod shared;
-mod solve;
-mod statistics;
+mod shared_triangle;
+mod closed_form;
+mod triangle_regions;
+mod bisection;
 
 pub use crossings::{Crossing, Crossings, EdgeId, EdgeNumbers, TooManyEdges};
 pub use settings::{EdgeSettings, RootMethod};

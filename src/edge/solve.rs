@@ -1,7 +1,7 @@
 //! All intersected edges of a band, in parallel over its leaves.
 
 use super::hybrid::Solver;
-use super::leaf::LeafSolver;
+use super::leaf_edges::LeafSolver;
 use super::settings::{EdgeSettings, RootMethod};
 use super::statistics::EdgeStatistics;
 use super::{Crossing, Crossings, EdgeNumbers};

@@ -5,7 +5,7 @@
 //! do; here every question is asked where one triangle has the root, which is where the whole mesh has it most of the
 //! time. Where that leads nowhere, the hybrid solver takes over.
 
-use super::analytic;
+use super::closed_form;
 use super::hybrid::{End, GridEdge, NodeTriangle, Root, SHORTEST, Solver, TOLERANCE};
 use super::statistics::EdgeStatistics;
 use crate::candidates::Candidates;
@@ -82,7 +82,7 @@ impl Solver<'_> {
     /// Where `triangle` has the root between two positions.
     fn root_on(&self, edge: &GridEdge, triangle: u32, [low, high]: [f64; 2]) -> Option<f64> {
         let triangle = self.distance.ssvh().triangle(triangle);
-        let s = analytic::root(triangle, self.at(edge, low), self.at(edge, high), self.r)?;
+        let s = closed_form::root(triangle, self.at(edge, low), self.at(edge, high), self.r)?;
         Some(low + s * (high - low))
     }
 

@@ -3,7 +3,7 @@
 use super::Ssvh;
 use super::query::{Hit, widened};
 use crate::geom::simd::{F64s, Vec3F64s};
-use crate::geom::triangle::TriangleInLanes;
+use crate::geom::triangle::SplatTriangle;
 use pulp::Simd;
 
 /// The best so far of eight points.
@@ -25,7 +25,7 @@ impl Closest8 {
     pub fn offer<S: Simd>(
         &mut self,
         simd: S,
-        triangle: &TriangleInLanes<S>,
+        triangle: &SplatTriangle<S>,
         id: u32,
         points: &[[f64; 8]; 3],
         vector: usize,

@@ -1,11 +1,11 @@
 //! Where a segment reaches the offset distance from one triangle, in closed form (\[LW11\] section V.B).
 
-use super::regions::{Piece, walk};
+use super::triangle_regions::{Interval, walk};
 use crate::geom::roots::quadratic;
 use crate::geom::triangle::{Feature, Triangle};
 use glam::DVec3;
 
-/// How far beyond a piece's ends a root may lie and still belong to it: two neighbouring pieces round the
+/// How far beyond an interval's ends a root may lie and still belong to it: two neighbouring intervals round the
 /// plane between them differently.
 const OVERLAP: f64 = 1e-9;
 
@@ -16,15 +16,15 @@ pub(super) fn root(triangle: &Triangle, p1: DVec3, p2: DVec3, r: f64) -> Option<
     let (feature1, feature2) = (triangle.feature(p1), triangle.feature(p2));
     if feature1 == feature2 {
         // Regions are convex: the whole segment is in this one.
-        return in_region(triangle, p1, p2, r, Piece { from: 0.0, to: 1.0, feature: feature1 });
+        return in_region(triangle, p1, p2, r, Interval { from: 0.0, to: 1.0, feature: feature1 });
     }
-    walk(triangle, p1, p2).find_map(|piece| in_region(triangle, p1, p2, r, piece))
+    walk(triangle, p1, p2).find_map(|interval| in_region(triangle, p1, p2, r, interval))
 }
 
-fn in_region(triangle: &Triangle, p1: DVec3, p2: DVec3, r: f64, piece: Piece) -> Option<f64> {
+fn in_region(triangle: &Triangle, p1: DVec3, p2: DVec3, r: f64, interval: Interval) -> Option<f64> {
     let direction = p2 - p1;
-    let within = |t: &f64| (piece.from - OVERLAP..=piece.to + OVERLAP).contains(t);
-    let root = match piece.feature {
+    let within = |t: &f64| (interval.from - OVERLAP..=interval.to + OVERLAP).contains(t);
+    let root = match interval.feature {
         // Remark 5: the distance from the plane is linear along the segment.
         Feature::Face => {
             let slope = direction.dot(triangle.normal);

@@ -1,31 +1,31 @@
 //! The walk of a segment through the regions around a triangle (\[LW11\] section V.B, Definition 4).
 //!
 //! The seven regions are separated by planes perpendicular to the triangle: one through each edge, and
-//! two at the ends of each edge. Each region is convex, so a segment crosses it in one piece.
+//! two at the ends of each edge. Each region is convex, so a segment crosses it in one interval.
 
 use crate::geom::triangle::{Feature, Side, Triangle};
 use glam::DVec3;
 
-/// A piece of the segment within one region.
+/// An interval of the segment within one region.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Piece {
+pub(super) struct Interval {
     /// Start and end, as parameters of the segment in 0..=1.
     pub(super) from: f64,
     pub(super) to: f64,
-    /// The feature that all points of the piece are closest to.
+    /// The feature that all points of the interval are closest to.
     pub(super) feature: Feature,
 }
 
 /// Three planes through edges, six at their ends, and the two ends of the segment.
 const MAX_CUTS: usize = 11;
 
-/// The pieces of the segment p1 p2, in order.
-pub(super) fn walk(triangle: &Triangle, p1: DVec3, p2: DVec3) -> impl Iterator<Item = Piece> + '_ {
+/// The intervals of the segment p1 p2, in order.
+pub(super) fn walk(triangle: &Triangle, p1: DVec3, p2: DVec3) -> impl Iterator<Item = Interval> + '_ {
     let at = move |t: f64| p1 + (p2 - p1) * t;
     let (cuts, count) = cuts(triangle, p1, p2);
     (1..count).filter(move |&i| cuts[i - 1] < cuts[i]).map(move |i| {
         let (from, to) = (cuts[i - 1], cuts[i]);
-        Piece { from, to, feature: triangle.feature(at(0.5 * (from + to))) }
+        Interval { from, to, feature: triangle.feature(at(0.5 * (from + to))) }
     })
 }
 
@@ -68,16 +68,16 @@ mod tests {
         ) {
             let triangle = Triangle::new(corners.map(DVec3::from), [0, 1, 2]);
             let (p1, p2) = (DVec3::from(p1), DVec3::from(p2));
-            let pieces: Vec<Piece> = walk(&triangle, p1, p2).collect();
-            prop_assert_eq!(pieces[0].from, 0.0);
-            prop_assert_eq!(pieces[pieces.len() - 1].to, 1.0);
-            for pair in pieces.windows(2) {
+            let intervals: Vec<Interval> = walk(&triangle, p1, p2).collect();
+            prop_assert_eq!(intervals[0].from, 0.0);
+            prop_assert_eq!(intervals[intervals.len() - 1].to, 1.0);
+            for pair in intervals.windows(2) {
                 prop_assert_eq!(pair[0].to, pair[1].from);
             }
-            for piece in pieces.iter().filter(|p| p.to - p.from > 1e-6) {
+            for interval in intervals.iter().filter(|p| p.to - p.from > 1e-6) {
                 for s in [0.01, 0.3, 0.8, 0.99] {
-                    let t = piece.from + s * (piece.to - piece.from);
-                    prop_assert_eq!(triangle.closest(p1 + (p2 - p1) * t).feature, piece.feature);
+                    let t = interval.from + s * (interval.to - interval.from);
+                    prop_assert_eq!(triangle.closest(p1 + (p2 - p1) * t).feature, interval.feature);
                 }
             }
         }
