@@ -14,8 +14,8 @@
 
 use super::cell_vertex::UNSURE;
 use crate::contour::feature::SPREAD;
-use crate::geom::lanes::{F64s, M64s, P64s, in_lanes};
 use crate::geom::quadric::CUTOFF;
+use crate::geom::simd::{F64s, Mask64s, Vec3F64s, dispatch};
 use pulp::{Simd, WithSimd};
 
 type Point = [f64; 3];
@@ -99,7 +99,7 @@ impl Batch {
 
     /// Solves all cells, and begins a new batch.
     pub fn solve(&mut self) -> Solved {
-        let solved = in_lanes(Solve { slots: &self.slots[..self.used], counts: &self.counts });
+        let solved = dispatch(Solve { slots: &self.slots[..self.used], counts: &self.counts });
         self.len = 0;
         self.used = 0;
         solved
@@ -131,11 +131,11 @@ fn solve<S: Simd>(simd: S, Solve { slots, counts }: Solve<'_>, vector: usize, so
     let number = F64s::splat;
     let zero = number(simd, 0.0);
     let count = F64s::load(simd, counts, vector);
-    let mut mean = P64s::splat(simd, [0.0; 3]);
+    let mut mean = Vec3F64s::splat(simd, [0.0; 3]);
     let mut sum = mean;
     for slot in slots {
-        mean = mean + P64s::load(simd, &slot.points, vector);
-        sum = sum + P64s::load(simd, &slot.normals, vector);
+        mean = mean + Vec3F64s::load(simd, &slot.points, vector);
+        sum = sum + Vec3F64s::load(simd, &slot.normals, vector);
     }
     mean = mean.times(number(simd, 1.0) / count);
     let v = sum.times(number(simd, 1.0) / sum.dot(sum).sqrt());
@@ -145,8 +145,8 @@ fn solve<S: Simd>(simd: S, Solve { slots, counts }: Solve<'_>, vector: usize, so
     let [mut a, mut ke, mut kf, mut ee, mut ef, mut ff] = [zero; 6];
     let [mut rv, mut re, mut rf] = [zero; 3];
     for slot in slots {
-        let n = P64s::load(simd, &slot.normals, vector);
-        let height = n.dot(P64s::load(simd, &slot.points, vector) - mean);
+        let n = Vec3F64s::load(simd, &slot.normals, vector);
+        let height = n.dot(Vec3F64s::load(simd, &slot.points, vector) - mean);
         let (nv, ne, nf) = (n.dot(v), n.dot(e), n.dot(f));
         a = a + nv * nv;
         ke = ke + nv * ne;
@@ -165,8 +165,8 @@ fn solve<S: Simd>(simd: S, Solve { slots, counts }: Solve<'_>, vector: usize, so
 
     let mut disagreement = zero;
     for slot in slots {
-        let n = P64s::load(simd, &slot.normals, vector);
-        let height = n.dot(P64s::load(simd, &slot.points, vector) - point);
+        let n = Vec3F64s::load(simd, &slot.normals, vector);
+        let height = n.dot(Vec3F64s::load(simd, &slot.points, vector) - point);
         disagreement = disagreement.max(height.max(zero - height));
     }
     let lengths = a + ee + ff - count;
@@ -179,13 +179,13 @@ fn solve<S: Simd>(simd: S, Solve { slots, counts }: Solve<'_>, vector: usize, so
 
 /// Two unit vectors perpendicular to `v` and to each other (Duff et al. 2017).
 #[inline(always)]
-fn across<S: Simd>(simd: S, v: P64s<S>) -> (P64s<S>, P64s<S>) {
+fn across<S: Simd>(simd: S, v: Vec3F64s<S>) -> (Vec3F64s<S>, Vec3F64s<S>) {
     let [zero, one] = [0.0, 1.0].map(|x| F64s::splat(simd, x));
     let sign = v.z.less(zero).select(zero - one, one);
     let a = (zero - one) / (sign + v.z);
     let b = v.x * v.y * a;
-    let e = P64s { x: one + sign * v.x * v.x * a, y: sign * b, z: zero - sign * v.x };
-    let f = P64s { x: b, y: sign + v.y * v.y * a, z: zero - v.y };
+    let e = Vec3F64s { x: one + sign * v.x * v.x * a, y: sign * b, z: zero - sign * v.x };
+    let f = Vec3F64s { x: b, y: sign + v.y * v.y * a, z: zero - v.y };
     (e, f)
 }
 
@@ -218,7 +218,7 @@ impl<S: Simd> Plane<S> {
         let ux = is_flat.select(ef, difference + radius);
         let uy = is_flat.select(radius - difference, ef);
         let step = (ux * re + uy * rf) / ((ux * ux + uy * uy) * large);
-        let has_one: M64s<S> = cutoff.less(large);
+        let has_one: Mask64s<S> = cutoff.less(large);
         let has_both = cutoff.less(small);
         let x = has_both.select(bx, has_one.select(step * ux, zero));
         let y = has_both.select(by, has_one.select(step * uy, zero));
