@@ -1,9 +1,8 @@
 //! Watches an offset and stops it after a while: `cargo run --release --example
 //! progress_and_cancel`.
 
-use exocarp::error::Error;
 use exocarp::mesh::shapes;
-use exocarp::offset::{OffsetSettings, VoxelSize, offset};
+use exocarp::offset::{OffsetError, OffsetSettings, VoxelSize, offset};
 use exocarp::run::{CancelToken, Phase, Progress, RunSettings};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -38,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let settings = OffsetSettings { voxel: VoxelSize::Resolution(1000), ..OffsetSettings::default() };
     match offset(&model, &settings, &run) {
         Ok(result) => println!("done before the clock: {} triangles", result.mesh.triangles.len()),
-        Err(Error::Cancelled(_)) => println!("cancelled after {:.2} s", started.elapsed().as_secs_f64()),
+        Err(OffsetError::Cancelled) => println!("cancelled after {:.2} s", started.elapsed().as_secs_f64()),
         Err(other) => return Err(other.into()),
     }
     Ok(())

@@ -1,71 +1,63 @@
-//! The one error of the public API; each stage's own error is a variant.
+//! The umbrella over the errors of all operations, for callers that let them through with `?`.
+//!
+//! Nothing inside the library uses it: each operation returns an error of its own.
 
-use crate::compare::CompareError;
 use crate::contour::ContourError;
 use crate::edge::TooManyEdges;
 use crate::io::{LoadError, MergeError, SaveError};
-use crate::offset::{EmptyResult, InputError, MemoryError, SettingsError};
+use crate::offset::{MemoryError, OffsetError};
 use crate::run::{Cancelled, ThreadError};
 use crate::thicken::ThickenError;
 use crate::vdb::VdbError;
 use crate::verify::VerifyError;
 
-/// Why an operation failed.
+/// Any error of this library.
+///
+/// Each operation returns an error of its own, and all of them convert into this one. However a
+/// run was cancelled, it is [`Error::Cancelled`].
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A file could not be read as a mesh.
     #[error(transparent)]
     Load(#[from] LoadError),
-    /// A file could not be written.
+    /// A mesh could not be written.
     #[error(transparent)]
     Save(#[from] SaveError),
-    /// Tiles cannot be joined.
+    /// Tiles could not be joined.
     #[error(transparent)]
     Merge(#[from] MergeError),
-    /// The mesh is not suitable.
+    /// An offset or a band could not be made.
     #[error(transparent)]
-    Input(#[from] InputError),
-    /// The settings make no sense.
-    #[error(transparent)]
-    Settings(#[from] SettingsError),
-    /// The work would not fit into memory.
-    #[error(transparent)]
-    Memory(#[from] MemoryError),
-    /// The surface crosses too many grid edges.
-    #[error(transparent)]
-    TooManyEdges(#[from] TooManyEdges),
-    /// The result is empty.
-    #[error(transparent)]
-    Empty(#[from] EmptyResult),
-    /// Contouring failed.
-    #[error(transparent)]
-    Contour(#[from] ContourError),
-    /// OpenVDB failed.
-    #[error(transparent)]
-    Vdb(#[from] VdbError),
-    /// A verification cannot be done.
-    #[error(transparent)]
-    Verify(VerifyError),
-    /// A patch cannot be thickened.
+    Offset(OffsetError),
+    /// A patch could not be thickened.
     #[error(transparent)]
     Thicken(#[from] ThickenError),
-    /// A comparison could not be made.
+    /// A mesh could not be judged.
     #[error(transparent)]
-    Compare(CompareError),
-    /// The run was cancelled.
+    Verify(VerifyError),
+    /// A grid or a `.vdb` file could not be made, read or written.
     #[error(transparent)]
-    Cancelled(#[from] Cancelled),
+    Vdb(VdbError),
     /// The worker threads could not be started.
     #[error(transparent)]
     Threads(#[from] ThreadError),
+    /// The run was cancelled.
+    #[error("cancelled")]
+    Cancelled,
 }
 
-impl From<CompareError> for Error {
-    fn from(error: CompareError) -> Self {
+impl From<Cancelled> for Error {
+    fn from(Cancelled: Cancelled) -> Self {
+        Error::Cancelled
+    }
+}
+
+impl From<OffsetError> for Error {
+    fn from(error: OffsetError) -> Self {
         match error {
-            CompareError::Cancelled => Error::Cancelled(Cancelled),
-            other => Error::Compare(other),
+            OffsetError::Cancelled => Error::Cancelled,
+            other => Error::Offset(other),
         }
     }
 }
@@ -73,8 +65,36 @@ impl From<CompareError> for Error {
 impl From<VerifyError> for Error {
     fn from(error: VerifyError) -> Self {
         match error {
-            VerifyError::Cancelled => Error::Cancelled(Cancelled),
+            VerifyError::Cancelled => Error::Cancelled,
             other => Error::Verify(other),
         }
+    }
+}
+
+impl From<VdbError> for Error {
+    fn from(error: VdbError) -> Self {
+        match error {
+            VdbError::Cancelled => Error::Cancelled,
+            VdbError::Merge(error) => Error::Merge(error),
+            other => Error::Vdb(other),
+        }
+    }
+}
+
+impl From<ContourError> for Error {
+    fn from(error: ContourError) -> Self {
+        OffsetError::from(error).into()
+    }
+}
+
+impl From<TooManyEdges> for Error {
+    fn from(error: TooManyEdges) -> Self {
+        OffsetError::from(error).into()
+    }
+}
+
+impl From<MemoryError> for Error {
+    fn from(error: MemoryError) -> Self {
+        OffsetError::from(error).into()
     }
 }

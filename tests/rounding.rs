@@ -1,11 +1,9 @@
 //! The promise holds on the coordinates in the file: meshes are written, read again and judged, for
 //! models of all sizes and far from the origin.
 
-use exocarp::contour::ContourError;
-use exocarp::error::Error;
 use exocarp::io::{Coordinates, SaveOptions, load, save};
 use exocarp::mesh::{TriMesh, clean, shapes};
-use exocarp::offset::{Length, OffsetSettings, Precision, VoxelSize, offset};
+use exocarp::offset::{Length, OffsetError, OffsetSettings, Precision, VoxelSize, offset};
 use exocarp::run::RunSettings;
 use exocarp::verify::soundness;
 use glam::{DQuat, DVec3};
@@ -87,7 +85,7 @@ fn far_from_the_origin_coordinates_of_32_bits_are_refused_and_those_of_64_bits_a
         for fraction in [0.02, -0.01] {
             let what = format!("{name} {fraction}");
             match offset(&model, &settings(fraction, Precision::F32), &run()) {
-                Err(Error::Contour(ContourError::TooFarFromOrigin { .. })) => {}
+                Err(OffsetError::CoarseCoordinates { .. }) => {}
                 other => panic!("{what}: {other:?}"),
             }
             let result = offset(&model, &settings(fraction, Precision::F64), &run()).expect(&what);
@@ -114,7 +112,7 @@ fn between_the_two_whatever_is_written_is_sound() {
                 assert_sound(&again, result.mesh.vertices.len(), &format!("{name} {step}"));
                 sound += 1;
             }
-            Err(Error::Contour(ContourError::TooFarFromOrigin { .. })) => refused += 1,
+            Err(OffsetError::CoarseCoordinates { .. }) => refused += 1,
             Err(error) => panic!("{step}: {error}"),
         }
     }

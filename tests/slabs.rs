@@ -1,12 +1,11 @@
 //! Slabs against the whole: the same mesh, the same band, the same counts.
 
 use exocarp::contour::SlabContour;
-use exocarp::error::Error;
 use exocarp::lattice::LEAF_SIZE;
 use exocarp::mesh::{TriMesh, shapes};
 use exocarp::offset::{
-    Cut, Length, OffsetResult, OffsetSettings, PieceSink, Precision, SignMode, Tolerance, VoxelSize, offset,
-    offset_in_slabs,
+    Cut, Length, OffsetError, OffsetResult, OffsetSettings, PieceSink, Precision, SignMode, SinkError,
+    Tolerance, VoxelSize, offset, offset_in_slabs,
 };
 use exocarp::run::RunSettings;
 use exocarp::vdb::Band;
@@ -20,12 +19,12 @@ fn run() -> RunSettings {
 struct Gathered(TriMesh);
 
 impl PieceSink for Gathered {
-    fn restart(&mut self) -> Result<(), Error> {
+    fn restart(&mut self) -> Result<(), SinkError> {
         self.0 = TriMesh::default();
         Ok(())
     }
 
-    fn piece(&mut self, piece: &SlabContour) -> Result<(), Error> {
+    fn piece(&mut self, piece: &SlabContour) -> Result<(), SinkError> {
         let first = self.0.vertices.len() as i64 - piece.vertices.start as i64;
         self.0.vertices.extend_from_slice(&piece.mesh.vertices[piece.vertices.clone()]);
         let number = |v: u32| u32::try_from(first + i64::from(v)).unwrap();
@@ -74,7 +73,7 @@ fn content(band: &Band) -> (Vec<exocarp::lattice::Ijk>, Vec<u32>, Vec<[u64; 8]>,
 /// A little more than the thinnest slabs take: those of one layer would be many.
 fn little_memory(mesh: &TriMesh, settings: &OffsetSettings) -> u64 {
     match offset_in_slabs(mesh, settings, Cut::Memory(1), &mut Gathered::default(), &run()) {
-        Err(Error::Memory(error)) => error.needed + error.needed / 20,
+        Err(OffsetError::Memory(error)) => error.needed + error.needed / 20,
         // Nothing is cut where no surface is.
         _ => 1,
     }
@@ -122,11 +121,11 @@ fn slabs_one_after_the_other_give_the_whole() {
 struct Continued<'a>(&'a mut Gathered);
 
 impl PieceSink for Continued<'_> {
-    fn restart(&mut self) -> Result<(), Error> {
+    fn restart(&mut self) -> Result<(), SinkError> {
         Ok(())
     }
 
-    fn piece(&mut self, piece: &SlabContour) -> Result<(), Error> {
+    fn piece(&mut self, piece: &SlabContour) -> Result<(), SinkError> {
         self.0.piece(piece)
     }
 }

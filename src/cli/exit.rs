@@ -1,9 +1,11 @@
 //! How the program ends: exit codes, and which error means which.
 
 use exocarp::compare::CompareError;
-use exocarp::contour::ContourError;
 use exocarp::error::Error;
-use exocarp::io::{MergeProblem, SaveProblem};
+use exocarp::io::{LoadError, MergeError, MergeErrorKind, SaveError, SaveErrorKind};
+use exocarp::offset::{InputError, OffsetError};
+use exocarp::paper::PaperError;
+use exocarp::run::{Cancelled, ThreadError};
 use exocarp::thicken::ThickenError;
 use exocarp::vdb::VdbError;
 use exocarp::verify::VerifyError;
@@ -81,54 +83,121 @@ pub(super) fn say_interrupted() {
     }
 }
 
-impl<E: Into<Error>> From<E> for Failure {
-    fn from(error: E) -> Self {
-        let error = error.into();
-        let mut sentence = error.to_string();
-        if matches!(error, Error::Vdb(VdbError::Write { .. })) {
-            sentence += "; check the permissions and the free space";
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        Failure::new(of(&error), error.to_string() + remedy(&error))
+    }
+}
+
+/// Errors of the library that the umbrella takes.
+macro_rules! failure_from {
+    ($($error:ty),+) => {$(
+        impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                Error::from(error).into()
+            }
         }
-        Failure::new(of(&error), sentence)
+    )+};
+}
+
+failure_from!(Cancelled, LoadError, MergeError, OffsetError, SaveError, ThickenError, ThreadError);
+failure_from!(VdbError, VerifyError);
+
+impl From<CompareError> for Failure {
+    fn from(error: CompareError) -> Self {
+        let sentence = error.to_string();
+        match error {
+            CompareError::Cancelled => Cancelled.into(),
+            CompareError::Load(error) => error.into(),
+            CompareError::Save(error) => error.into(),
+            CompareError::Offset(error) => error.into(),
+            CompareError::Verify(error) => error.into(),
+            CompareError::Vdb(error) => error.into(),
+            CompareError::Setting(_) => Failure::usage(sentence),
+            CompareError::Temporary(error) => Failure::new(of_io(&error), sentence),
+            _ => Failure::new(Exit::Internal, sentence),
+        }
+    }
+}
+
+impl From<PaperError> for Failure {
+    fn from(error: PaperError) -> Self {
+        match error {
+            PaperError::Cancelled => Cancelled.into(),
+            PaperError::Load(error) => error.into(),
+            PaperError::Offset(error) => error.into(),
+            PaperError::Verify(error) => error.into(),
+            _ => Failure::new(Exit::Internal, error.to_string()),
+        }
+    }
+}
+
+/// The part of a sentence that names what the command line can do: the library knows no options.
+fn remedy(error: &Error) -> &'static str {
+    match error {
+        Error::Offset(OffsetError::Input(InputError::Open { .. } | InputError::Misoriented { .. })) => {
+            ", or go ahead all the same with --sign pseudonormal"
+        }
+        Error::Offset(OffsetError::Memory(_)) => " (or raise --max-memory)",
+        Error::Merge(error) if matches!(error.kind, MergeErrorKind::NotATile) => {
+            "; exocarp offset --tile writes them"
+        }
+        Error::Vdb(VdbError::Write { .. }) => "; check the permissions and the free space",
+        _ => "",
     }
 }
 
 /// Which error means which exit.
 fn of(error: &Error) -> Exit {
     match error {
-        Error::Cancelled(_) => Exit::Interrupted,
-        Error::Settings(_) | Error::Verify(VerifyError::Setting { .. }) => Exit::Usage,
-        Error::Load(_) | Error::Input(_) | Error::Verify(_) => Exit::Input,
-        Error::Empty(_) => Exit::Empty,
-        Error::Compare(CompareError::Setting(_)) => Exit::Usage,
-        Error::Compare(CompareError::Temporary(e)) => of_io(e),
+        Error::Cancelled => Exit::Interrupted,
+        Error::Load(_) => Exit::Input,
+        Error::Offset(error) => of_offset(error),
+        Error::Verify(VerifyError::Setting { .. }) => Exit::Usage,
+        Error::Verify(_) => Exit::Input,
         Error::Thicken(ThickenError::Patch(_)) => Exit::Input,
         Error::Thicken(ThickenError::Obstacle { .. }) => Exit::Limit,
         Error::Thicken(_) => Exit::Usage,
-        Error::Memory(_) | Error::TooManyEdges(_) | Error::Threads(_) => Exit::Limit,
-        Error::Contour(ContourError::Cancelled(_)) => Exit::Interrupted,
-        Error::Contour(_) => Exit::Limit,
-        Error::Save(error) => match &error.problem {
-            SaveProblem::Extension(_) => Exit::Usage,
-            SaveProblem::Create(e) | SaveProblem::Write(e) | SaveProblem::Replace(e) => of_io(e),
-            SaveProblem::Coordinate { .. } | SaveProblem::TooManyTriangles => Exit::Limit,
+        Error::Threads(_) => Exit::Limit,
+        Error::Save(error) => match &error.kind {
+            SaveErrorKind::Extension(_) => Exit::Usage,
+            SaveErrorKind::Create(e) | SaveErrorKind::Write(e) | SaveErrorKind::Replace(e) => of_io(e),
+            SaveErrorKind::Coordinate { .. } | SaveErrorKind::TooManyTriangles => Exit::Limit,
             _ => Exit::Internal,
         },
-        Error::Merge(error) => match &error.problem {
-            MergeProblem::Write(e) => of_io(e),
-            MergeProblem::TooLarge => Exit::Limit,
-            MergeProblem::Empty => Exit::Empty,
+        Error::Merge(error) => match &error.kind {
+            MergeErrorKind::Write(e) => of_io(e),
+            MergeErrorKind::TooLarge => Exit::Limit,
+            MergeErrorKind::Empty => Exit::Empty,
             _ => Exit::Input,
         },
-        Error::Vdb(error) => match error {
-            VdbError::Cancelled(_) => Exit::Interrupted,
-            VdbError::Read { .. }
-            | VdbError::NotVdb { .. }
-            | VdbError::MissingGrid { .. }
-            | VdbError::Unsuitable { .. } => Exit::Input,
-            VdbError::Size { .. } => Exit::Limit,
-            VdbError::Write { reason, .. } if is_full(reason) => Exit::Limit,
-            _ => Exit::Internal,
-        },
+        Error::Vdb(error) => of_vdb(error),
+        _ => Exit::Internal,
+    }
+}
+
+fn of_offset(error: &OffsetError) -> Exit {
+    match error {
+        OffsetError::Cancelled => Exit::Interrupted,
+        OffsetError::Settings(_) => Exit::Usage,
+        OffsetError::Input(_) => Exit::Input,
+        OffsetError::Empty(_) => Exit::Empty,
+        OffsetError::Memory(_) | OffsetError::TooManyEdges(_) => Exit::Limit,
+        OffsetError::TooManyVertices | OffsetError::CoarseCoordinates { .. } => Exit::Limit,
+        OffsetError::Vdb(error) => of_vdb(error),
+        _ => Exit::Internal,
+    }
+}
+
+fn of_vdb(error: &VdbError) -> Exit {
+    match error {
+        VdbError::Cancelled => Exit::Interrupted,
+        VdbError::Read { .. }
+        | VdbError::NotVdb { .. }
+        | VdbError::MissingGrid { .. }
+        | VdbError::Unsuitable { .. } => Exit::Input,
+        VdbError::Size { .. } => Exit::Limit,
+        VdbError::Write { reason, .. } if is_full(reason) => Exit::Limit,
         _ => Exit::Internal,
     }
 }

@@ -137,7 +137,9 @@ pub(super) fn save_vdb(
         None => vdb::write(&staged, &band.surface, band.closest.as_ref(), options),
     };
     written.map_err(|error| match error {
-        VdbError::Write { reason, .. } => VdbError::Write { path: output.into(), reason }.into(),
+        VdbError::Write { reason, source, .. } => {
+            VdbError::Write { path: output.into(), reason, source }.into()
+        }
         other => other.into(),
     })
 }

@@ -46,7 +46,9 @@ fn of_output(error: Error, staged: &Path, output: &Path) -> Error {
             error.path = output.into();
             error.into()
         }
-        Error::Vdb(VdbError::Write { reason, .. }) => VdbError::Write { path: output.into(), reason }.into(),
+        Error::Vdb(VdbError::Write { reason, source, .. }) => {
+            VdbError::Write { path: output.into(), reason, source }.into()
+        }
         other => other,
     }
 }

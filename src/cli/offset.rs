@@ -13,7 +13,7 @@ use super::session::{Session, Verbosity};
 use super::statistics::{MeshFacts, Phases, RunFile};
 use super::strategy::{check_pieces, identity, make};
 use exocarp::mesh::{CleanReport, Topology};
-use exocarp::offset::{EngineTimes, OffsetResult, OffsetSettings, OffsetStatistics, VoxelSize};
+use exocarp::offset::{EngineTimes, OffsetError, OffsetResult, OffsetSettings, OffsetStatistics, VoxelSize};
 use exocarp::run::{Bytes, Phase};
 use exocarp::vdb::VdbOptions;
 use serde::Serialize;
@@ -79,7 +79,7 @@ fn settings(arguments: &OffsetArguments, session: &Session) -> Result<OffsetSett
         resolve: arguments.resolve,
         max_memory: session.max_memory,
     };
-    settings.validate().map_err(exocarp::error::Error::from)?;
+    settings.validate().map_err(OffsetError::from)?;
     Ok(settings)
 }
 

@@ -5,11 +5,11 @@ use super::exit::Failure;
 use super::files::{coordinates, format, save_mesh};
 use super::session::Session;
 use exocarp::contour::SlabContour;
-use exocarp::error::Error;
 use exocarp::io::{Format, MeshStream, SaveError, Tile, save_tile};
 use exocarp::mesh::TriMesh;
 use exocarp::offset::{
-    Cut, OffsetResult, OffsetSettings, PieceSink, available_memory, job, offset, offset_band, offset_in_slabs,
+    Cut, OffsetError, OffsetResult, OffsetSettings, PieceSink, SinkError, available_memory, job, offset,
+    offset_band, offset_in_slabs,
 };
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -42,7 +42,7 @@ pub(super) fn make(
     match way(arguments, output, session)? {
         Way::Whole { or_slabs } => {
             let result = match (offset(mesh, settings, run), or_slabs) {
-                (Err(Error::Memory(_)), Some(memory)) => {
+                (Err(OffsetError::Memory(_)), Some(memory)) => {
                     return in_slabs(mesh, arguments, settings, memory, output, session);
                 }
                 (result, _) => result?,
@@ -57,10 +57,7 @@ pub(super) fn make(
             let tile = identity(TileNumber { number, of }, mesh, settings);
             let mut sink = Tiled { staged, tile, f64: arguments.more.f64, seconds: 0.0 };
             let result = offset_in_slabs(mesh, settings, Cut::Tile { number, of }, &mut sink, run);
-            let result = result.map_err(|error| match error {
-                Error::Save(error) => of_output(error, output),
-                other => other.into(),
-            })?;
+            let result = result.map_err(|error| of_offset(error, output))?;
             Ok((result, sink.seconds))
         }
     }
@@ -79,13 +76,8 @@ fn in_slabs(
     let named = |error| of_output(error, output);
     let stream = MeshStream::create(&staged, coordinates(arguments.more.f64)).map_err(named)?;
     let mut sink = Streamed { stream, seconds: 0.0 };
-    let result =
-        offset_in_slabs(mesh, settings, Cut::Memory(memory), &mut sink, &session.run).map_err(|error| {
-            match error {
-                Error::Save(error) => of_output(error, output),
-                other => other.into(),
-            }
-        })?;
+    let result = offset_in_slabs(mesh, settings, Cut::Memory(memory), &mut sink, &session.run)
+        .map_err(|error| of_offset(error, output))?;
     let started = Instant::now();
     sink.stream.finish().map_err(named)?;
     Ok((result, sink.seconds + started.elapsed().as_secs_f64()))
@@ -134,6 +126,17 @@ fn of_output(error: SaveError, output: &Path) -> Failure {
     SaveError { path: output.into(), ..error }.into()
 }
 
+/// Names the output in an error of the file that the mesh goes to.
+fn of_offset(error: OffsetError, output: &Path) -> Failure {
+    match error {
+        OffsetError::Sink(error) => match error.downcast::<SaveError>() {
+            Ok(error) => of_output(*error, output),
+            Err(error) => OffsetError::Sink(error).into(),
+        },
+        other => other.into(),
+    }
+}
+
 /// Pieces go to a file as they come.
 struct Streamed {
     stream: MeshStream,
@@ -141,11 +144,11 @@ struct Streamed {
 }
 
 impl PieceSink for Streamed {
-    fn restart(&mut self) -> Result<(), Error> {
+    fn restart(&mut self) -> Result<(), SinkError> {
         Ok(self.stream.clear()?)
     }
 
-    fn piece(&mut self, piece: &SlabContour) -> Result<(), Error> {
+    fn piece(&mut self, piece: &SlabContour) -> Result<(), SinkError> {
         let started = Instant::now();
         self.stream.append(&piece.mesh, piece.vertices.clone(), piece.triangles.clone())?;
         self.seconds += started.elapsed().as_secs_f64();
@@ -162,12 +165,12 @@ struct Tiled {
 }
 
 impl PieceSink for Tiled {
-    fn restart(&mut self) -> Result<(), Error> {
+    fn restart(&mut self) -> Result<(), SinkError> {
         // A tile that the surface does not pass is a file without triangles.
         Ok(save_tile(&self.staged, &TriMesh::default(), 0..0, 0..0, self.tile, coordinates(self.f64))?)
     }
 
-    fn piece(&mut self, piece: &SlabContour) -> Result<(), Error> {
+    fn piece(&mut self, piece: &SlabContour) -> Result<(), SinkError> {
         let started = Instant::now();
         let (vertices, triangles) = (piece.vertices.clone(), piece.triangles.clone());
         save_tile(&self.staged, &piece.mesh, vertices, triangles, self.tile, coordinates(self.f64))?;

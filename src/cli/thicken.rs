@@ -100,7 +100,7 @@ fn settings(arguments: &ThickenArguments, session: &Session) -> Result<ThickenSe
         max_memory: session.max_memory,
         ..defaults
     };
-    settings.validate().map_err(exocarp::error::Error::from)?;
+    settings.validate()?;
     Ok(settings)
 }
 

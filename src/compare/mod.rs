@@ -17,6 +17,7 @@
 //! of who made them. Not promised: that the peers' memory is all theirs; a Python interpreter is in
 //! MeshLib's. What a process held before the method began is measured, too.
 
+mod error;
 mod machine;
 mod measurement;
 mod method;
@@ -25,6 +26,7 @@ pub mod report;
 mod table;
 mod worker;
 
+pub use error::CompareError;
 pub use machine::machine;
 pub use measurement::{Measurement, PhaseTime, median, peak_memory};
 pub use method::{Method, Needs};
@@ -32,14 +34,12 @@ pub use process::{Lost, Programs, WORKER, measure, probe_meshlib, worker_argumen
 pub use table::{Column, Row, rows, text};
 pub use worker::{Job, work};
 
-use crate::error::Error;
 use crate::io::{self, Coordinates, SaveOptions};
 use crate::mesh::{Topology, TriMesh};
 use crate::offset::{InputError, Length, OffsetSettings, VoxelSize};
 use crate::run::RunSettings;
 use crate::verify::{VerifyReport, VerifySettings, verify};
 use serde::Serialize;
-use std::path::PathBuf;
 use std::time::Duration;
 
 /// What to compare.
@@ -116,35 +116,6 @@ pub struct MethodResult {
     pub mesh: Option<TriMesh>,
 }
 
-/// Why there is no comparison.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum CompareError {
-    /// A program could not be started.
-    #[error("{} cannot be started: {source}", program.display())]
-    Start {
-        /// The program.
-        program: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// No directory for the intermediate files.
-    #[error("there is no room for temporary files: {0}")]
-    Temporary(std::io::Error),
-    /// The method runs in Python, not in this program.
-    #[error("{} runs in Python, not in this program", .0.title())]
-    NotHere(Method),
-    /// A picture could not be encoded.
-    #[error("a picture could not be encoded: {0}")]
-    Picture(String),
-    /// A setting makes no sense.
-    #[error("{0}")]
-    Setting(&'static str),
-    /// The run was cancelled.
-    #[error("cancelled")]
-    Cancelled,
-}
-
 /// What is happening, for those who wait.
 #[derive(Clone, Debug)]
 pub enum Event<'a> {
@@ -161,9 +132,10 @@ pub enum Event<'a> {
 /// Compares the methods on `mesh`, which has been cleaned. `watch` is told what happens.
 ///
 /// # Errors
-/// - [`Error::Settings`], [`Error::Input`]: as for an offset; the mesh must be closed.
-/// - [`Error::Compare`]: processes cannot be started, no temporary files.
-/// - [`Error::Cancelled`].
+/// - [`CompareError::Offset`]: as for an offset; the mesh must be closed.
+/// - [`CompareError::Start`], [`CompareError::Temporary`]: processes cannot be started, no
+///   temporary files.
+/// - [`CompareError::Cancelled`].
 ///
 /// A method that fails is no error: its [`MethodResult::lost`] says why.
 pub fn compare(
@@ -172,7 +144,7 @@ pub fn compare(
     programs: &Programs,
     run: &RunSettings,
     watch: &mut dyn FnMut(Event),
-) -> Result<Comparison, Error> {
+) -> Result<Comparison, CompareError> {
     let mut comparison = prepare(mesh, settings, run)?;
     let methods = available(&settings.methods, programs, run, &mut comparison.notes)?;
     let directory = tempfile::tempdir().map_err(CompareError::Temporary)?;
@@ -215,7 +187,7 @@ pub fn compare(
         watch(Event::Judging(result.method));
         match io::load(&output(result.method)) {
             Ok(mesh) => result.mesh = Some(mesh),
-            Err(error) => result.lost = Some(Lost::Failed(error.problem.to_string())),
+            Err(error) => result.lost = Some(Lost::Failed(error.kind.to_string())),
         }
         if let Some(output) = &result.mesh {
             let voxel = Some(comparison.voxel);
@@ -234,7 +206,11 @@ impl MethodResult {
 }
 
 /// Checks what can be checked, and the numbers that hold for all methods.
-fn prepare(mesh: &TriMesh, settings: &CompareSettings, run: &RunSettings) -> Result<Comparison, Error> {
+fn prepare(
+    mesh: &TriMesh,
+    settings: &CompareSettings,
+    run: &RunSettings,
+) -> Result<Comparison, CompareError> {
     if settings.runs == 0 || settings.methods.is_empty() {
         return Err(CompareError::Setting("there is nothing to compare: name a method and a run").into());
     }

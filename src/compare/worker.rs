@@ -1,8 +1,7 @@
 //! One method, once: what runs in a process of its own.
 
 use super::measurement::{Measurement, PhaseTime, peak_memory};
-use super::{Method, Needs};
-use crate::error::Error;
+use super::{CompareError, Method, Needs};
 use crate::lattice::Lattice;
 use crate::mesh::TriMesh;
 use crate::offset::{Length, OffsetSettings, VoxelSize, offset};
@@ -34,11 +33,11 @@ const HALF_WIDTH: f64 = 3.0;
 /// the surface.
 ///
 /// # Errors
-/// Whatever fails; [`CompareError::NotHere`](super::CompareError::NotHere) for MeshLib's methods,
+/// Whatever fails; [`CompareError::NotHere`] for MeshLib's methods,
 /// which run in Python.
-pub fn work(job: &Job, run: &RunSettings) -> Result<Measurement, Error> {
+pub fn work(job: &Job, run: &RunSettings) -> Result<Measurement, CompareError> {
     if job.method.needs() != Needs::Nothing {
-        return Err(super::CompareError::NotHere(job.method).into());
+        return Err(CompareError::NotHere(job.method));
     }
     let mesh = TriMesh::load(&job.input)?;
     let memory_before = peak_memory();
@@ -67,7 +66,7 @@ struct Made {
     active_voxels: u64,
 }
 
-fn engine(mesh: &TriMesh, job: &Job, run: &RunSettings) -> Result<Made, Error> {
+fn engine(mesh: &TriMesh, job: &Job, run: &RunSettings) -> Result<Made, CompareError> {
     let settings = OffsetSettings {
         distance: Length::Units(job.distance),
         voxel: VoxelSize::Units(job.voxel),
@@ -88,7 +87,7 @@ fn engine(mesh: &TriMesh, job: &Job, run: &RunSettings) -> Result<Made, Error> {
     })
 }
 
-fn openvdb(mesh: &TriMesh, job: &Job, run: &RunSettings) -> Result<Made, Error> {
+fn openvdb(mesh: &TriMesh, job: &Job, run: &RunSettings) -> Result<Made, CompareError> {
     let lattice = Lattice { voxel: job.voxel };
     let reach = |side: f64| (side * job.distance / job.voxel).max(0.0) + HALF_WIDTH;
     let wide = job.method == Method::OpenvdbWide;

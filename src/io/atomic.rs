@@ -12,21 +12,21 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use super::error::{SaveError, SaveProblem};
+use super::error::{SaveError, SaveErrorKind};
 
 /// Writes the file `path` through `write`.
 pub(crate) fn write_atomically(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<&mut File>) -> std::io::Result<()>,
 ) -> Result<(), SaveError> {
-    let at = |problem| SaveError { path: path.to_path_buf(), problem };
+    let at = |kind| SaveError { path: path.to_path_buf(), kind };
     let target = target(path);
-    let mut temporary = create_beside(&target).map_err(|e| at(SaveProblem::Create(e)))?;
+    let mut temporary = create_beside(&target).map_err(|e| at(SaveErrorKind::Create(e)))?;
     let mut writer = BufWriter::with_capacity(1 << 16, temporary.as_file_mut());
-    write(&mut writer).and_then(|()| writer.flush()).map_err(|e| at(SaveProblem::Write(e)))?;
+    write(&mut writer).and_then(|()| writer.flush()).map_err(|e| at(SaveErrorKind::Write(e)))?;
     drop(writer);
-    keep_permissions(temporary.path(), &target).map_err(|e| at(SaveProblem::Replace(e)))?;
-    temporary.persist(&target).map_err(|e| at(SaveProblem::Replace(e.error)))?;
+    keep_permissions(temporary.path(), &target).map_err(|e| at(SaveErrorKind::Replace(e)))?;
+    temporary.persist(&target).map_err(|e| at(SaveErrorKind::Replace(e.error)))?;
     Ok(())
 }
 
@@ -37,12 +37,12 @@ pub(crate) fn write_path_atomically<E: From<SaveError>>(
     path: &Path,
     write: impl FnOnce(&Path) -> Result<(), E>,
 ) -> Result<(), E> {
-    let at = |problem| SaveError { path: path.to_path_buf(), problem };
+    let at = |kind| SaveError { path: path.to_path_buf(), kind };
     let target = target(path);
-    let temporary = create_beside(&target).map_err(|e| at(SaveProblem::Create(e)))?.into_temp_path();
+    let temporary = create_beside(&target).map_err(|e| at(SaveErrorKind::Create(e)))?.into_temp_path();
     write(&temporary)?;
-    keep_permissions(&temporary, &target).map_err(|e| at(SaveProblem::Replace(e)))?;
-    temporary.persist(&target).map_err(|e| at(SaveProblem::Replace(e.error)))?;
+    keep_permissions(&temporary, &target).map_err(|e| at(SaveErrorKind::Replace(e)))?;
+    temporary.persist(&target).map_err(|e| at(SaveErrorKind::Replace(e.error)))?;
     Ok(())
 }
 

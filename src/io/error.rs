@@ -6,16 +6,17 @@ use super::Format;
 
 /// Why a mesh file could not be loaded.
 #[derive(Debug, thiserror::Error)]
-#[error("{}{place}: {problem}", .path.display())]
+#[error("{}{location}: {kind}", .path.display())]
 pub struct LoadError {
     /// The file.
     pub path: PathBuf,
     /// Its format; `None` when the extension is not known.
     pub format: Option<Format>,
-    /// Where in the file.
-    pub place: Place,
-    /// What is wrong.
-    pub problem: Problem,
+    /// The position of the cause in the file.
+    pub location: Location,
+    /// The cause.
+    #[source]
+    pub kind: LoadErrorKind,
 }
 
 /// The extension of a file belongs to no known format.
@@ -26,9 +27,9 @@ pub struct UnknownFormat {
     pub found: String,
 }
 
-/// Where in a file something is wrong.
+/// A position in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum Location {
     /// The file as a whole.
     File,
     /// A line of a text file, counted from 1.
@@ -46,24 +47,24 @@ pub enum Place {
     },
 }
 
-impl std::fmt::Display for Place {
+impl std::fmt::Display for Location {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Place::File => Ok(()),
-            Place::Line(line) => write!(f, ", line {line}"),
-            Place::Byte(byte) => write!(f, ", byte {byte}"),
-            Place::Element { name, number, byte } => write!(f, ", {name} {number} (byte {byte})"),
+            Location::File => Ok(()),
+            Location::Line(line) => write!(f, ", line {line}"),
+            Location::Byte(byte) => write!(f, ", byte {byte}"),
+            Location::Element { name, number, byte } => write!(f, ", {name} {number} (byte {byte})"),
         }
     }
 }
 
-/// What is wrong with a file that could not be loaded.
+/// The cause of a [`LoadError`].
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum Problem {
+pub enum LoadErrorKind {
     /// The file cannot be opened.
     #[error("the file cannot be opened ({0}); check the path and the permissions")]
-    Open(std::io::Error),
+    Open(#[source] std::io::Error),
     /// The path names something else than a file: a pipe, a device.
     #[error("this is a pipe or a device; save what comes from it as a file and name that")]
     NotAFile,
@@ -72,7 +73,7 @@ pub enum Problem {
     StandardInput,
     /// Reading failed.
     #[error("reading failed ({0}); check the disk or copy the file again")]
-    Read(std::io::Error),
+    Read(#[source] std::io::Error),
     /// The extension belongs to no known format.
     #[error(transparent)]
     Extension(#[from] UnknownFormat),
@@ -130,39 +131,39 @@ pub enum Problem {
     TooManyVertices,
 }
 
-/// A [`Problem`] at its [`Place`]: a [`LoadError`] before the path is known.
+/// A [`LoadErrorKind`] at its [`Location`]: a [`LoadError`] before the path is known.
 #[derive(Debug)]
-pub(super) struct Fault {
-    pub(super) place: Place,
-    pub(super) problem: Problem,
+pub(super) struct ReadError {
+    pub(super) location: Location,
+    pub(super) kind: LoadErrorKind,
 }
 
-impl From<Problem> for Fault {
-    fn from(problem: Problem) -> Self {
-        Fault { place: Place::File, problem }
+impl From<LoadErrorKind> for ReadError {
+    fn from(kind: LoadErrorKind) -> Self {
+        ReadError { location: Location::File, kind }
     }
 }
 
-impl From<std::io::Error> for Fault {
+impl From<std::io::Error> for ReadError {
     fn from(error: std::io::Error) -> Self {
-        Problem::Read(error).into()
+        LoadErrorKind::Read(error).into()
     }
 }
 
-impl Problem {
-    /// This problem on line `line`.
-    pub(super) fn on_line(self, line: u64) -> Fault {
-        Fault { place: Place::Line(line), problem: self }
+impl LoadErrorKind {
+    /// Puts the error on line `line`, counted from 1.
+    pub(super) fn on_line(self, line: u64) -> ReadError {
+        ReadError { location: Location::Line(line), kind: self }
     }
 
-    /// A [`Problem::Syntax`] that quotes `found`.
-    pub(super) fn syntax(found: &[u8], expected: impl Into<String>) -> Problem {
-        Problem::Syntax { found: quote(found), expected: expected.into() }
+    /// A [`LoadErrorKind::Syntax`] that quotes `found`.
+    pub(super) fn syntax(found: &[u8], expected: impl Into<String>) -> LoadErrorKind {
+        LoadErrorKind::Syntax { found: quote(found), expected: expected.into() }
     }
 
-    /// A [`Problem::Truncated`].
-    pub(super) fn truncated(missing: impl Into<String>) -> Problem {
-        Problem::Truncated { missing: missing.into() }
+    /// A [`LoadErrorKind::Truncated`].
+    pub(super) fn truncated(missing: impl Into<String>) -> LoadErrorKind {
+        LoadErrorKind::Truncated { missing: missing.into() }
     }
 }
 
@@ -181,30 +182,31 @@ pub(super) fn quote(bytes: &[u8]) -> String {
 
 /// Why a file could not be saved.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: {problem}", .path.display())]
+#[error("{}: {kind}", .path.display())]
 pub struct SaveError {
     /// The file that was to be written.
     pub path: PathBuf,
-    /// What is wrong.
-    pub problem: SaveProblem,
+    /// The cause.
+    #[source]
+    pub kind: SaveErrorKind,
 }
 
-/// What is wrong with a file that could not be saved.
+/// The cause of a [`SaveError`].
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum SaveProblem {
+pub enum SaveErrorKind {
     /// The extension belongs to no known format.
     #[error(transparent)]
     Extension(#[from] UnknownFormat),
     /// No file can be created in the directory.
     #[error("no file can be created there ({0}); check that the directory exists and is writable")]
-    Create(std::io::Error),
+    Create(#[source] std::io::Error),
     /// Writing failed.
     #[error("writing failed ({0}); check the free space, the output was left as it was")]
-    Write(std::io::Error),
+    Write(#[source] std::io::Error),
     /// The complete file could not take its place.
     #[error("the complete file could not be put in place ({0}); check the permissions of the target")]
-    Replace(std::io::Error),
+    Replace(#[source] std::io::Error),
     /// A coordinate is not finite, or too large for single precision.
     #[error(
         "vertex {vertex} at {position:?} does not fit the number type of the file; write f64 if the model is that large"

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::error::{Fault, Place, Problem};
+use super::error::{LoadErrorKind, Location, ReadError};
 use super::polygon::PolygonMesh;
 use crate::mesh::TriMesh;
 
@@ -25,14 +25,14 @@ pub struct Note {
     /// The file.
     pub path: PathBuf,
     /// Where in the file; the first place, if there are several.
-    pub place: Place,
+    pub location: Location,
     /// What was passed over.
     pub passed: Passed,
 }
 
 impl std::fmt::Display for Note {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}{}: {}", self.path.display(), self.place, self.passed)
+        write!(f, "{}{}: {}", self.path.display(), self.location, self.passed)
     }
 }
 
@@ -101,7 +101,7 @@ impl std::fmt::Display for Passed {
 /// The first coordinate of a file that is not finite.
 #[derive(Clone, Debug)]
 pub(super) struct NonFinite {
-    pub(super) place: Place,
+    pub(super) location: Location,
     /// As it stands there, quoted in text.
     pub(super) coordinate: String,
 }
@@ -113,26 +113,26 @@ pub(super) struct Content {
     /// The first coordinate that is not finite; where there is none, all vertices are finite.
     pub(super) non_finite: Option<NonFinite>,
     /// What else was passed over.
-    pub(super) passed: Vec<(Place, Passed)>,
+    pub(super) passed: Vec<(Location, Passed)>,
 }
 
 impl Content {
     /// The mesh, without what is not finite.
-    pub(super) fn finish(self, path: &Path) -> Result<Loaded, Fault> {
+    pub(super) fn finish(self, path: &Path) -> Result<Loaded, ReadError> {
         let Content { mut mesh, non_finite, mut passed } = self;
         let mut left_out = Vec::new();
-        let mut nothing_left = Problem::NoTriangles.into();
-        if let Some(NonFinite { place, coordinate }) = non_finite {
+        let mut nothing_left = LoadErrorKind::NoTriangles.into();
+        if let Some(NonFinite { location, coordinate }) = non_finite {
             let faces = mesh.drop_non_finite(&mut left_out);
             let what = Passed::NonFinite { coordinate: coordinate.clone(), vertices: left_out.len(), faces };
-            passed.push((place.clone(), what));
-            nothing_left = Fault { place, problem: Problem::NonFinite(coordinate) };
+            passed.push((location.clone(), what));
+            nothing_left = ReadError { location, kind: LoadErrorKind::NonFinite(coordinate) };
         }
         let mesh = mesh.finish();
         if mesh.triangles.is_empty() {
             return Err(nothing_left);
         }
-        let note = |(place, passed)| Note { path: path.to_path_buf(), place, passed };
+        let note = |(location, passed)| Note { path: path.to_path_buf(), location, passed };
         Ok(Loaded { mesh, left_out, notes: passed.into_iter().map(note).collect() })
     }
 }

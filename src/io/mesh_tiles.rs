@@ -4,8 +4,8 @@
 //! of the whole; after them those vertices of other tiles that its triangles need. No two vertices of the whole are at
 //! one position, so a vertex is known by that.
 
-use super::error::{Problem, SaveError, SaveProblem};
-use super::tile::{MergeError, MergeProblem, Tile, check_complete};
+use super::error::{LoadErrorKind, SaveError, SaveErrorKind};
+use super::tile::{MergeError, MergeErrorKind, Tile, check_complete};
 use super::{Coordinates, Format, ply, stl};
 use crate::mesh::TriMesh;
 use std::collections::HashMap;
@@ -27,8 +27,8 @@ pub fn save_tile(
     tile: Tile,
     coordinates: Coordinates,
 ) -> Result<(), SaveError> {
-    let at = |problem| SaveError { path: path.to_path_buf(), problem };
-    let format = Format::of(path).map_err(|e| at(SaveProblem::Extension(e)))?;
+    let at = |kind| SaveError { path: path.to_path_buf(), kind };
+    let format = Format::of(path).map_err(|e| at(SaveErrorKind::Extension(e)))?;
     let write = || -> io::Result<Option<()>> {
         let mut file = BufWriter::with_capacity(1 << 20, File::create(path)?);
         match format {
@@ -50,7 +50,7 @@ pub fn save_tile(
         }
         file.flush().map(Some)
     };
-    write().map_err(|e| at(SaveProblem::Write(e)))?.ok_or_else(|| at(SaveProblem::NotInPieces(format)))
+    write().map_err(|e| at(SaveErrorKind::Write(e)))?.ok_or_else(|| at(SaveErrorKind::NotInPieces(format)))
 }
 
 /// The note on how many vertices of a file are its own.
@@ -103,11 +103,11 @@ struct TileFile {
 
 impl TileFile {
     fn open(path: &Path) -> Result<TileFile, MergeError> {
-        let at = |problem| MergeError { path: path.to_path_buf(), problem };
-        let format = Format::of(path).map_err(|_| at(MergeProblem::NotATile))?;
-        let file = super::open(path).map_err(|problem| match problem {
-            Problem::Open(e) => at(MergeProblem::Read(e)),
-            _ => at(MergeProblem::NotATile),
+        let at = |kind| MergeError { path: path.to_path_buf(), kind };
+        let format = Format::of(path).map_err(|_| at(MergeErrorKind::NotATile))?;
+        let file = super::open(path).map_err(|kind| match kind {
+            LoadErrorKind::Open(e) => at(MergeErrorKind::Read(e)),
+            _ => at(MergeErrorKind::NotATile),
         })?;
         let mut file = BufReader::new(file);
         let opened = match format {
@@ -116,11 +116,11 @@ impl TileFile {
             Format::Obj | Format::Off => Ok(None),
         };
         let opened =
-            opened.map_err(|e| at(MergeProblem::Read(e)))?.ok_or_else(|| at(MergeProblem::NotATile))?;
-        let length = file.get_ref().metadata().map_err(|e| at(MergeProblem::Read(e)))?.len();
+            opened.map_err(|e| at(MergeErrorKind::Read(e)))?.ok_or_else(|| at(MergeErrorKind::NotATile))?;
+        let length = file.get_ref().metadata().map_err(|e| at(MergeErrorKind::Read(e)))?.len();
         if length != opened.length() {
             let cut = io::Error::new(io::ErrorKind::UnexpectedEof, "it was cut off, or something was added");
-            return Err(at(MergeProblem::Read(cut)));
+            return Err(at(MergeErrorKind::Read(cut)));
         }
         Ok(opened)
     }
@@ -207,7 +207,7 @@ impl TileFile {
             file.seek(SeekFrom::Start(start))?;
             Ok(BufReader::with_capacity(1 << 20, file))
         };
-        open().map_err(|e| self.failed(MergeProblem::Read(e)))
+        open().map_err(|e| self.failed(MergeErrorKind::Read(e)))
     }
 
     /// Hands `count` records of `size` bytes from `start` on to `visit`.
@@ -221,14 +221,14 @@ impl TileFile {
         let mut file = self.at(start)?;
         let mut record = vec![0; size];
         for _ in 0..count {
-            file.read_exact(&mut record).map_err(|e| self.failed(MergeProblem::Read(e)))?;
+            file.read_exact(&mut record).map_err(|e| self.failed(MergeErrorKind::Read(e)))?;
             visit(&record)?;
         }
         Ok(())
     }
 
-    fn failed(&self, problem: MergeProblem) -> MergeError {
-        MergeError { path: self.path.clone(), problem }
+    fn failed(&self, kind: MergeErrorKind) -> MergeError {
+        MergeError { path: self.path.clone(), kind }
     }
 }
 
@@ -239,22 +239,22 @@ impl TileFile {
 /// When a file is no tile, is of another work, is there twice or not at all, or when reading or writing fails.
 pub fn merge_tiles(tiles: &[PathBuf], output: &Path) -> Result<(u64, u64), MergeError> {
     let tiles = sorted(tiles)?;
-    let at = |problem| MergeError { path: output.to_path_buf(), problem };
+    let at = |kind| MergeError { path: output.to_path_buf(), kind };
     let first = &tiles[0];
     if Format::of(output).ok() != Some(first.format) {
-        return Err(first.failed(MergeProblem::OtherFormat(first.format.extension())));
+        return Err(first.failed(MergeErrorKind::OtherFormat(first.format.extension())));
     }
     let triangles: u64 = tiles.iter().map(|t| t.triangles).sum();
     let vertices: u64 = tiles.iter().map(|t| t.own).sum();
     if triangles == 0 {
-        return Err(at(MergeProblem::Empty));
+        return Err(at(MergeErrorKind::Empty));
     }
     if vertices.max(triangles * u64::from(first.format == Format::Stl)) > u64::from(u32::MAX) {
-        return Err(at(MergeProblem::TooLarge));
+        return Err(at(MergeErrorKind::TooLarge));
     }
-    let file = File::create(output).map_err(|e| at(MergeProblem::Write(e)))?;
+    let file = File::create(output).map_err(|e| at(MergeErrorKind::Write(e)))?;
     let mut file = BufWriter::with_capacity(1 << 20, file);
-    let mut write = |bytes: &[u8]| file.write_all(bytes).map_err(|e| at(MergeProblem::Write(e)));
+    let mut write = |bytes: &[u8]| file.write_all(bytes).map_err(|e| at(MergeErrorKind::Write(e)));
     if first.format == Format::Stl {
         write(&stl::head(triangles as u32))?;
         for tile in &tiles {
@@ -264,7 +264,7 @@ pub fn merge_tiles(tiles: &[PathBuf], output: &Path) -> Result<(u64, u64), Merge
         write(&ply::header(vertices, triangles, first.coordinates, &[]))?;
         merge_ply(&tiles, &mut write)?;
     }
-    file.flush().map_err(|e| at(MergeProblem::Write(e)))?;
+    file.flush().map_err(|e| at(MergeErrorKind::Write(e)))?;
     Ok((vertices, triangles))
 }
 
@@ -298,7 +298,7 @@ fn merge_ply(
         let start = tile.body + tile.own * tile.vertex() as u64;
         tile.records(start, tile.vertices - tile.own, tile.vertex(), |position| {
             let number = wanted.get(position).copied().flatten();
-            others.push(number.ok_or_else(|| tile.failed(MergeProblem::NoFit))?);
+            others.push(number.ok_or_else(|| tile.failed(MergeErrorKind::NoFit))?);
             Ok(())
         })?;
         tile.records(tile.faces(), tile.triangles, ply::FACE, |face| {
@@ -307,7 +307,7 @@ fn merge_ply(
                 let v = u32::from_le_bytes(*from);
                 let number = match u64::from(v).checked_sub(tile.own) {
                     None => first + v,
-                    Some(n) => *others.get(n as usize).ok_or_else(|| tile.failed(MergeProblem::NoFit))?,
+                    Some(n) => *others.get(n as usize).ok_or_else(|| tile.failed(MergeErrorKind::NoFit))?,
                 };
                 to.copy_from_slice(&number.to_le_bytes());
             }
@@ -326,10 +326,10 @@ fn sorted(paths: &[PathBuf]) -> Result<Vec<TileFile>, MergeError> {
     let first = &tiles[0];
     for tile in &tiles {
         if tile.coordinates != first.coordinates {
-            return Err(tile.failed(MergeProblem::OtherJob));
+            return Err(tile.failed(MergeErrorKind::OtherJob));
         }
         if tile.format != first.format {
-            return Err(tile.failed(MergeProblem::OtherFormat(tile.format.extension())));
+            return Err(tile.failed(MergeErrorKind::OtherFormat(tile.format.extension())));
         }
     }
     Ok(tiles)

@@ -50,14 +50,14 @@ use std::path::Path;
 
 #[doc(hidden)]
 pub use atomic::keep_permissions;
-pub use error::{LoadError, Place, Problem, SaveError, SaveProblem, UnknownFormat};
+pub use error::{LoadError, LoadErrorKind, Location, SaveError, SaveErrorKind, UnknownFormat};
 pub use loaded::{Loaded, Note, Passed};
 pub use mesh_tiles::{merge_tiles, save_tile};
 pub use stream::MeshStream;
-pub use tile::{MergeError, MergeProblem, Tile};
+pub use tile::{MergeError, MergeErrorKind, Tile};
 
 use crate::mesh::TriMesh;
-use error::Fault;
+use error::ReadError;
 use loaded::Content;
 
 /// A mesh file format.
@@ -153,18 +153,18 @@ pub fn load(path: &Path) -> Result<TriMesh, LoadError> {
 /// # Errors
 /// As [`load`].
 pub fn load_with_notes(path: &Path) -> Result<Loaded, LoadError> {
-    let at = |format, fault: Fault| LoadError {
+    let at = |format, error: ReadError| LoadError {
         path: path.to_path_buf(),
         format,
-        place: fault.place,
-        problem: fault.problem,
+        location: error.location,
+        kind: error.kind,
     };
     if path == Path::new("-") {
-        return Err(at(None, Problem::StandardInput.into()));
+        return Err(at(None, LoadErrorKind::StandardInput.into()));
     }
-    let format = Format::of(path).map_err(|e| at(None, Problem::Extension(e).into()))?;
-    let file = open(path).map_err(|problem| at(Some(format), problem.into()))?;
-    read(file, format).and_then(|content| content.finish(path)).map_err(|fault| at(Some(format), fault))
+    let format = Format::of(path).map_err(|e| at(None, LoadErrorKind::Extension(e).into()))?;
+    let file = open(path).map_err(|kind| at(Some(format), kind.into()))?;
+    read(file, format).and_then(|content| content.finish(path)).map_err(|error| at(Some(format), error))
 }
 
 /// The numbers that the vertices of the PLY file `path` have under `name`, in the order of the file; `None` where no
@@ -173,26 +173,26 @@ pub fn load_with_notes(path: &Path) -> Result<Loaded, LoadError> {
 /// # Errors
 /// As [`load`], and when the file is of another format.
 pub fn vertex_property(path: &Path, name: &str) -> Result<Option<Vec<f64>>, LoadError> {
-    let at = |fault: Fault| LoadError {
+    let at = |error: ReadError| LoadError {
         path: path.to_path_buf(),
         format: Some(Format::Ply),
-        place: fault.place,
-        problem: fault.problem,
+        location: error.location,
+        kind: error.kind,
     };
-    let mut file = open(path).map_err(|problem| at(problem.into()))?;
+    let mut file = open(path).map_err(|kind| at(kind.into()))?;
     length(&mut file).and_then(|length| ply::vertex_property(file, length, name)).map_err(at)
 }
 
 /// Opens a file for reading; nothing else, as opening a pipe would wait for who writes to it.
-fn open(path: &Path) -> Result<File, Problem> {
-    let kind = std::fs::metadata(path).map_err(Problem::Open)?.file_type();
+fn open(path: &Path) -> Result<File, LoadErrorKind> {
+    let kind = std::fs::metadata(path).map_err(LoadErrorKind::Open)?.file_type();
     if kind.is_dir() {
-        return Err(Problem::Open(std::io::ErrorKind::IsADirectory.into()));
+        return Err(LoadErrorKind::Open(std::io::ErrorKind::IsADirectory.into()));
     }
     if !kind.is_file() {
-        return Err(Problem::NotAFile);
+        return Err(LoadErrorKind::NotAFile);
     }
-    File::open(path).map_err(Problem::Open)
+    File::open(path).map_err(LoadErrorKind::Open)
 }
 
 /// Saves `mesh` in the file `path`, in the format that belongs to the extension. An existing file is
@@ -201,8 +201,8 @@ fn open(path: &Path) -> Result<File, Problem> {
 /// # Errors
 /// When the extension is unknown, the file cannot be written, or the format cannot hold the mesh.
 pub fn save(mesh: &TriMesh, path: &Path, options: &SaveOptions) -> Result<(), SaveError> {
-    let at = |problem| SaveError { path: path.to_path_buf(), problem };
-    let format = Format::of(path).map_err(|e| at(SaveProblem::Extension(e)))?;
+    let at = |kind| SaveError { path: path.to_path_buf(), kind };
+    let format = Format::of(path).map_err(|e| at(SaveErrorKind::Extension(e)))?;
     check_writable(mesh, format, options).map_err(at)?;
     atomic::write_atomically(path, |writer| match format {
         Format::Obj => obj::write(mesh, options.coordinates, writer),
@@ -231,7 +231,7 @@ impl TriMesh {
 }
 
 /// Reads a mesh of the given format from the beginning of `source`.
-fn read<R: Read + Seek>(mut source: R, format: Format) -> Result<Content, Fault> {
+fn read<R: Read + Seek>(mut source: R, format: Format) -> Result<Content, ReadError> {
     let length = length(&mut source)?;
     match format {
         Format::Obj => obj::read(source),
@@ -242,26 +242,26 @@ fn read<R: Read + Seek>(mut source: R, format: Format) -> Result<Content, Fault>
 }
 
 /// The bytes of a file that has some. It is at its beginning afterwards.
-fn length(source: &mut impl Seek) -> Result<u64, Fault> {
+fn length(source: &mut impl Seek) -> Result<u64, ReadError> {
     let length = source.seek(SeekFrom::End(0))?;
     source.rewind()?;
-    if length == 0 { Err(Problem::Empty.into()) } else { Ok(length) }
+    if length == 0 { Err(LoadErrorKind::Empty.into()) } else { Ok(length) }
 }
 
 /// Refuses, before the first byte is written, what would make a file that no one can read.
-fn check_writable(mesh: &TriMesh, format: Format, options: &SaveOptions) -> Result<(), SaveProblem> {
+fn check_writable(mesh: &TriMesh, format: Format, options: &SaveOptions) -> Result<(), SaveErrorKind> {
     let single = format == Format::Stl || options.coordinates == Coordinates::F32;
     let fits = |x: f64| if single { (x as f32).is_finite() } else { x.is_finite() };
     if let Some(vertex) = mesh.vertices.iter().position(|v| !v.iter().all(|&x| fits(x))) {
-        return Err(SaveProblem::Coordinate { vertex, position: mesh.vertices[vertex] });
+        return Err(SaveErrorKind::Coordinate { vertex, position: mesh.vertices[vertex] });
     }
     let in_range = |t: &[u32; 3]| t.iter().all(|&v| (v as usize) < mesh.vertices.len());
     if let Some(triangle) = mesh.triangles.iter().position(|t| !in_range(t)) {
-        return Err(SaveProblem::VertexNumber { triangle });
+        return Err(SaveErrorKind::VertexNumber { triangle });
     }
     // STL counts its triangles in 32 bits.
     if format == Format::Stl && u32::try_from(mesh.triangles.len()).is_err() {
-        return Err(SaveProblem::TooManyTriangles);
+        return Err(SaveErrorKind::TooManyTriangles);
     }
     Ok(())
 }

@@ -7,7 +7,7 @@
 
 use std::io::{BufRead, BufReader, Read, Seek, Write};
 
-use super::error::{Fault, Problem, quote};
+use super::error::{LoadErrorKind, ReadError, quote};
 use super::loaded::{Content, NonFinite};
 use super::polygon::PolygonMesh;
 use super::text::{Text, is_not_finite, parse, write_number};
@@ -15,7 +15,7 @@ use super::{Coordinates, Format};
 use crate::mesh::TriMesh;
 
 /// Reads a mesh.
-pub(super) fn read<R: Read + Seek>(source: R) -> Result<Content, Fault> {
+pub(super) fn read<R: Read + Seek>(source: R) -> Result<Content, ReadError> {
     let mut filter = Filter::new(BufReader::with_capacity(1 << 16, source));
     let options = tobj::LoadOptions {
         single_index: false,
@@ -42,7 +42,7 @@ pub(super) fn read<R: Read + Seek>(source: R) -> Result<Content, Fault> {
         }
     }
     if mesh.vertices.len() > u32::MAX as usize {
-        return Err(Problem::TooManyVertices.into());
+        return Err(LoadErrorKind::TooManyVertices.into());
     }
     let is_finite = mesh.vertices.iter().all(|v| v.iter().all(|x| x.is_finite()));
     let non_finite = if is_finite { None } else { Some(filter.find_non_finite()?) };
@@ -57,7 +57,7 @@ struct Filter<R> {
     /// How much of `output` was consumed.
     consumed: usize,
     /// Why reading stopped, if it did; `tobj` cannot carry it.
-    fault: Option<Fault>,
+    error: Option<ReadError>,
 }
 
 /// What a line is about.
@@ -71,11 +71,11 @@ enum Statement {
 impl<R: BufRead> Filter<R> {
     fn new(reader: R) -> Self {
         let text = Text::new(reader, Format::Obj, 0).with_comments(b'#');
-        Filter { text, output: Vec::new(), consumed: 0, fault: None }
+        Filter { text, output: Vec::new(), consumed: 0, error: None }
     }
 
     /// Goes to the next line, joined with those it continues on. `None` at the end of the file.
-    fn next_statement(&mut self) -> Result<Option<Statement>, Fault> {
+    fn next_statement(&mut self) -> Result<Option<Statement>, ReadError> {
         if !self.text.next_line()? {
             return Ok(None);
         }
@@ -95,7 +95,7 @@ impl<R: BufRead> Filter<R> {
     }
 
     /// Puts the next vertex or face into `output`; leaves it empty at the end of the file.
-    fn refill(&mut self) -> Result<(), Fault> {
+    fn refill(&mut self) -> Result<(), ReadError> {
         self.output.clear();
         self.consumed = 0;
         while self.output.is_empty() {
@@ -117,7 +117,7 @@ impl<R: BufRead> Filter<R> {
                         let line = self.text.line();
                         return Err(self
                             .text
-                            .fault(Problem::syntax(line, "a face of three or more corners")));
+                            .error(LoadErrorKind::syntax(line, "a face of three or more corners")));
                     }
                 }
             }
@@ -142,11 +142,11 @@ impl<R: BufRead> Filter<R> {
 impl<R: BufRead> BufRead for Filter<R> {
     fn fill_buf(&mut self) -> std::io::Result<&[u8]> {
         if self.consumed == self.output.len()
-            && let Err(fault) = self.refill()
+            && let Err(error) = self.refill()
         {
             self.output.clear();
-            self.fault = Some(fault);
-            return Err(std::io::Error::other("see Filter::fault"));
+            self.error = Some(error);
+            return Err(std::io::Error::other("see Filter::error"));
         }
         Ok(&self.output[self.consumed..])
     }
@@ -166,25 +166,25 @@ impl<R: BufRead> Read for Filter<R> {
 
 impl<R: BufRead + Seek> Filter<R> {
     /// What `error` means and where it is. While lines are parsed, the filter stands on the culprit.
-    fn explain(&mut self, error: tobj::LoadError) -> Fault {
-        if let Some(fault) = self.fault.take() {
-            return fault;
+    fn explain(&mut self, error: tobj::LoadError) -> ReadError {
+        if let Some(error) = self.error.take() {
+            return error;
         }
         let line = self.text.line();
         match error {
-            tobj::LoadError::FaceVertexOutOfBounds => self.find_vertex_number().unwrap_or_else(|fault| fault),
+            tobj::LoadError::FaceVertexOutOfBounds => self.find_vertex_number().unwrap_or_else(|error| error),
             tobj::LoadError::PositionParseError => {
-                self.text.fault(Problem::syntax(line, "a vertex \"v x y z\""))
+                self.text.error(LoadErrorKind::syntax(line, "a vertex \"v x y z\""))
             }
             tobj::LoadError::FaceParseError => {
-                self.text.fault(Problem::syntax(line, "a face \"f i j k\" of whole vertex numbers"))
+                self.text.error(LoadErrorKind::syntax(line, "a face \"f i j k\" of whole vertex numbers"))
             }
-            other => self.text.fault(Problem::syntax(line, format!("valid OBJ ({other})"))),
+            other => self.text.error(LoadErrorKind::syntax(line, format!("valid OBJ ({other})"))),
         }
     }
 
     /// The first face that names a vertex that the file does not have.
-    fn find_vertex_number(&mut self) -> Result<Fault, Fault> {
+    fn find_vertex_number(&mut self) -> Result<ReadError, ReadError> {
         let mut count = 0i64;
         self.text.rewind()?;
         while let Some(statement) = self.next_statement()? {
@@ -201,16 +201,16 @@ impl<R: BufRead + Seek> Filter<R> {
                 let number = parse::<i64>(found).unwrap_or(0);
                 if number == 0 || number > count || number < -so_far {
                     let found = quote(found);
-                    return Ok(self.text.fault(Problem::VertexNumber { found, first: 1, last: count }));
+                    return Ok(self.text.error(LoadErrorKind::VertexNumber { found, first: 1, last: count }));
                 }
             }
         }
         // The file changed while it was read.
-        Ok(Problem::truncated("the vertices that its faces name").into())
+        Ok(LoadErrorKind::truncated("the vertices that its faces name").into())
     }
 
     /// The first coordinate that is not finite.
-    fn find_non_finite(&mut self) -> Result<NonFinite, Fault> {
+    fn find_non_finite(&mut self) -> Result<NonFinite, ReadError> {
         self.text.rewind()?;
         while let Some(statement) = self.next_statement()? {
             if statement == Statement::Vertex {
@@ -223,7 +223,7 @@ impl<R: BufRead + Seek> Filter<R> {
             }
         }
         // The file changed while it was read.
-        Err(Problem::truncated("the coordinate that is not finite").into())
+        Err(LoadErrorKind::truncated("the coordinate that is not finite").into())
     }
 }
 

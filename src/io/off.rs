@@ -5,7 +5,7 @@
 
 use std::io::{BufReader, Read, Write};
 
-use super::error::{Fault, Problem, quote};
+use super::error::{LoadErrorKind, ReadError, quote};
 use super::loaded::Content;
 use super::polygon::PolygonMesh;
 use super::text::{Text, write_number};
@@ -18,7 +18,7 @@ const SHORTEST_VERTEX: u64 = 6;
 const SHORTEST_FACE: u64 = 2;
 
 /// Reads a mesh from a file of `length` bytes.
-pub(super) fn read<R: Read>(source: R, length: u64) -> Result<Content, Fault> {
+pub(super) fn read<R: Read>(source: R, length: u64) -> Result<Content, ReadError> {
     let reader = BufReader::with_capacity(1 << 16, source);
     let mut text = Text::new(reader, Format::Off, 0).with_comments(b'#');
     let [vertices, faces] = read_header(&mut text)?;
@@ -27,7 +27,7 @@ pub(super) fn read<R: Read>(source: R, length: u64) -> Result<Content, Fault> {
     for i in 0..vertices {
         let mut vertex = [0.0; 3];
         for x in &mut vertex {
-            *x = text.coordinate("a coordinate").map_err(|fault| say_which(fault, "vertex", i, vertices))?;
+            *x = text.coordinate("a coordinate").map_err(|error| say_which(error, "vertex", i, vertices))?;
         }
         text.skip_rest_of_line();
         mesh.vertices.push(vertex);
@@ -35,7 +35,7 @@ pub(super) fn read<R: Read>(source: R, length: u64) -> Result<Content, Fault> {
     mesh.triangles.reserve_exact(faces.min(length / SHORTEST_FACE / 4) as usize);
     let mut corners = Vec::new();
     for i in 0..faces {
-        let cut = |fault| say_which(fault, "face", i, faces);
+        let cut = |error| say_which(error, "face", i, faces);
         corners.clear();
         for _ in 0..text.count("a number of corners").map_err(cut)? {
             corners.push(read_corner(&mut text, vertices).map_err(cut)?);
@@ -47,22 +47,22 @@ pub(super) fn read<R: Read>(source: R, length: u64) -> Result<Content, Fault> {
 }
 
 /// Reads the keyword and the numbers of vertices and faces.
-fn read_header<R: std::io::BufRead>(text: &mut Text<R>) -> Result<[u64; 2], Fault> {
+fn read_header<R: std::io::BufRead>(text: &mut Text<R>) -> Result<[u64; 2], ReadError> {
     let first = text.expect_word("the keyword OFF")?;
     let keyword = text.bytes(first.clone()).to_ascii_uppercase();
     if keyword.ends_with(b"OFF") {
-        check_keyword(&keyword).map_err(|problem| text.fault(problem))?;
+        check_keyword(&keyword).map_err(|kind| text.error(kind))?;
     } else if keyword.iter().all(u8::is_ascii_digit) {
         // The keyword may be missing.
         text.go_back_to(first);
     } else {
         let reason = format!("it begins with {}", quote(text.bytes(first)));
-        return Err(text.fault(Problem::WrongFormat { format: Format::Off, reason }));
+        return Err(text.error(LoadErrorKind::WrongFormat { format: Format::Off, reason }));
     }
     let word = text.expect_word("the number of vertices")?;
     if text.bytes(word.clone()).eq_ignore_ascii_case(b"BINARY") {
         let what = "the binary variant of OFF".into();
-        return Err(text.fault(Problem::Unsupported { what, remedy: "save as text or as .ply" }));
+        return Err(text.error(LoadErrorKind::Unsupported { what, remedy: "save as text or as .ply" }));
     }
     text.go_back_to(word);
     let vertices = text.count("the number of vertices")?;
@@ -71,40 +71,40 @@ fn read_header<R: std::io::BufRead>(text: &mut Text<R>) -> Result<[u64; 2], Faul
     text.skip_rest_of_line();
     match u32::try_from(vertices) {
         Ok(_) => Ok([vertices, faces]),
-        Err(_) => Err(text.fault(Problem::TooManyVertices)),
+        Err(_) => Err(text.error(LoadErrorKind::TooManyVertices)),
     }
 }
 
 /// Accepts the keywords whose vertices begin with x, y, z: `[ST][C][N]OFF`.
-fn check_keyword(keyword: &[u8]) -> Result<(), Problem> {
+fn check_keyword(keyword: &[u8]) -> Result<(), LoadErrorKind> {
     let rest = &keyword[..keyword.len() - 3];
     let rest = rest.strip_prefix(b"ST").unwrap_or(rest);
     match rest {
         b"" | b"C" | b"N" | b"CN" | b"NC" => Ok(()),
-        _ => Err(Problem::Unsupported {
+        _ => Err(LoadErrorKind::Unsupported {
             what: format!("the OFF variant {}", quote(keyword)),
             remedy: "save with three coordinates a vertex",
         }),
     }
 }
 
-fn read_corner<R: std::io::BufRead>(text: &mut Text<R>, vertices: u64) -> Result<u32, Fault> {
+fn read_corner<R: std::io::BufRead>(text: &mut Text<R>, vertices: u64) -> Result<u32, ReadError> {
     let number = text.integer("a vertex number")?;
     match u32::try_from(number) {
         Ok(v) if u64::from(v) < vertices => Ok(v),
         _ => {
             let (found, last) = (quote(number.to_string().as_bytes()), vertices as i64 - 1);
-            Err(text.fault(Problem::VertexNumber { found, first: 0, last }))
+            Err(text.error(LoadErrorKind::VertexNumber { found, first: 0, last }))
         }
     }
 }
 
 /// Says at which vertex or face a file was cut off.
-fn say_which(mut fault: Fault, name: &str, i: u64, count: u64) -> Fault {
-    if let Problem::Truncated { missing } = &mut fault.problem {
+fn say_which(mut error: ReadError, name: &str, i: u64, count: u64) -> ReadError {
+    if let LoadErrorKind::Truncated { missing } = &mut error.kind {
         *missing = format!("{missing} of {name} {i} (the header promises {count})");
     }
-    fault
+    error
 }
 
 /// Writes a mesh.

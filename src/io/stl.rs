@@ -12,7 +12,7 @@ use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::ops::Range;
 
 use super::Format;
-use super::error::{Fault, Place, Problem, quote};
+use super::error::{LoadErrorKind, Location, ReadError, quote};
 use super::loaded::{Content, NonFinite, Passed};
 use super::polygon::PolygonMesh;
 use super::text::{BYTE_ORDER_MARK, Text};
@@ -27,14 +27,14 @@ pub(super) const RECORD: usize = 50;
 const PROBE: usize = 1024;
 
 /// Reads a mesh from a file of `length` bytes.
-pub(super) fn read<R: Read + Seek>(source: R, length: u64) -> Result<Content, Fault> {
+pub(super) fn read<R: Read + Seek>(source: R, length: u64) -> Result<Content, ReadError> {
     let mut reader = BufReader::with_capacity(1 << 16, source);
     let mut probe = Vec::with_capacity(PROBE);
     (&mut reader).take(PROBE as u64).read_to_end(&mut probe)?;
     reader.rewind()?;
     let wrong_format = || {
         let reason = format!("it begins with {}", quote(&probe));
-        Problem::WrongFormat { format: Format::Stl, reason }
+        LoadErrorKind::WrongFormat { format: Format::Stl, reason }
     };
     let text = is_text(&probe);
     let Some(count) = probe.get(80..HEAD).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])) else {
@@ -57,13 +57,13 @@ pub(super) fn read<R: Read + Seek>(source: R, length: u64) -> Result<Content, Fa
     let found = (length - HEAD as u64) / RECORD as u64;
     if found > 0 && size_of(found) == length {
         let mut content = read_binary(reader, found, Attributes::TwoBytes)?;
-        content.passed.push((Place::Byte(80), Passed::Count { said: count, found }));
+        content.passed.push((Location::Byte(80), Passed::Count { said: count, found }));
         return Ok(content);
     }
     if promised > length {
-        return Err(Fault {
-            place: Place::Byte(length),
-            problem: Problem::truncated(format!(
+        return Err(ReadError {
+            location: Location::Byte(length),
+            kind: LoadErrorKind::truncated(format!(
                 "its last triangle ({count} triangles take {promised} bytes, the file has {length})"
             )),
         });
@@ -126,7 +126,7 @@ fn read_binary<R: Read + Seek>(
     mut reader: BufReader<R>,
     count: u64,
     attributes: Attributes,
-) -> Result<Content, Fault> {
+) -> Result<Content, ReadError> {
     let mut byte = HEAD as u64;
     reader.seek(SeekFrom::Start(byte))?;
     let mut content = Content::default();
@@ -135,9 +135,10 @@ fn read_binary<R: Read + Seek>(
     mesh.triangles.reserve_exact(count as usize);
     let mut record = [0; RECORD];
     for number in 0..count {
-        let place = || Place::Element { name: "triangle".into(), number, byte };
+        let location = || Location::Element { name: "triangle".into(), number, byte };
         let first = u32::try_from(mesh.vertices.len()).ok().filter(|&v| v < u32::MAX - 3);
-        let first = first.ok_or_else(|| Fault { place: place(), problem: Problem::TooManyVertices })?;
+        let first =
+            first.ok_or_else(|| ReadError { location: location(), kind: LoadErrorKind::TooManyVertices })?;
         reader.read_exact(&mut record)?;
         for corner in record[12..48].as_chunks::<12>().0 {
             let vertex: [f64; 3] = std::array::from_fn(|a| {
@@ -147,7 +148,7 @@ fn read_binary<R: Read + Seek>(
             if let Some(x) = vertex.iter().find(|x| !x.is_finite())
                 && content.non_finite.is_none()
             {
-                content.non_finite = Some(NonFinite { place: place(), coordinate: x.to_string() });
+                content.non_finite = Some(NonFinite { location: location(), coordinate: x.to_string() });
             }
             mesh.vertices.push(vertex);
         }
@@ -162,7 +163,7 @@ fn read_binary<R: Read + Seek>(
     Ok(content)
 }
 
-fn read_ascii<R: BufRead>(reader: R) -> Result<Content, Fault> {
+fn read_ascii<R: BufRead>(reader: R) -> Result<Content, ReadError> {
     let mut text = Text::new(reader, Format::Stl, 0);
     let mut mesh = PolygonMesh::default();
     let mut corners: Vec<u32> = Vec::new();
@@ -178,11 +179,11 @@ fn read_ascii<R: BufRead>(reader: R) -> Result<Content, Fault> {
             in_solid = false;
             text.skip_rest_of_line();
         } else {
-            return Err(text.fault(Problem::syntax(text.bytes(word), "\"facet\" or \"endsolid\"")));
+            return Err(text.error(LoadErrorKind::syntax(text.bytes(word), "\"facet\" or \"endsolid\"")));
         }
     }
     match in_solid {
-        true => Err(text.fault(Problem::truncated("\"endsolid\""))),
+        true => Err(text.error(LoadErrorKind::truncated("\"endsolid\""))),
         false => Ok(Content { mesh, non_finite: text.take_non_finite(), passed: Vec::new() }),
     }
 }
@@ -209,7 +210,7 @@ fn read_facet<R: BufRead>(
     text: &mut Text<R>,
     mesh: &mut PolygonMesh,
     corners: &mut Vec<u32>,
-) -> Result<(), Fault> {
+) -> Result<(), ReadError> {
     expect(text, "normal")?;
     for _ in 0..3 {
         // Normals that are not numbers are common, and of no use anyway.
@@ -224,10 +225,10 @@ fn read_facet<R: BufRead>(
             break;
         }
         if !is(text, &word, "vertex") {
-            return Err(text.fault(Problem::syntax(text.bytes(word), "\"vertex\" or \"endloop\"")));
+            return Err(text.error(LoadErrorKind::syntax(text.bytes(word), "\"vertex\" or \"endloop\"")));
         }
         let number = u32::try_from(mesh.vertices.len()).ok().filter(|&v| v < u32::MAX);
-        corners.push(number.ok_or_else(|| text.fault(Problem::TooManyVertices))?);
+        corners.push(number.ok_or_else(|| text.error(LoadErrorKind::TooManyVertices))?);
         let mut vertex = [0.0; 3];
         for x in &mut vertex {
             *x = text.coordinate("a coordinate")?;
@@ -238,12 +239,12 @@ fn read_facet<R: BufRead>(
     expect(text, "endfacet")
 }
 
-fn expect<R: BufRead>(text: &mut Text<R>, expected: &str) -> Result<(), Fault> {
+fn expect<R: BufRead>(text: &mut Text<R>, expected: &str) -> Result<(), ReadError> {
     let quoted = format!("\"{expected}\"");
     let word = text.expect_word(&quoted)?;
     match is(text, &word, expected) {
         true => Ok(()),
-        false => Err(text.fault(Problem::syntax(text.bytes(word), quoted))),
+        false => Err(text.error(LoadErrorKind::syntax(text.bytes(word), quoted))),
     }
 }
 

@@ -4,7 +4,7 @@
 //! go to files without a name beside the target, and are put together at the end. STL takes triangles as they come, and
 //! gets their number at the end.
 
-use super::error::{SaveError, SaveProblem};
+use super::error::{SaveError, SaveErrorKind};
 use super::{Coordinates, Format, ply, stl};
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
@@ -41,8 +41,8 @@ impl MeshStream {
     /// # Errors
     /// When the extension is another one, or no file can be created there.
     pub fn create(path: &Path, coordinates: Coordinates) -> Result<MeshStream, SaveError> {
-        let at = |problem| SaveError { path: path.to_path_buf(), problem };
-        let format = Format::of(path).map_err(|e| at(SaveProblem::Extension(e)))?;
+        let at = |kind| SaveError { path: path.to_path_buf(), kind };
+        let format = Format::of(path).map_err(|e| at(SaveErrorKind::Extension(e)))?;
         let create = || -> io::Result<Option<Body>> {
             let buffered = |file| BufWriter::with_capacity(BUFFER, file);
             let directory = path.parent().filter(|p| *p != Path::new("")).unwrap_or(Path::new("."));
@@ -59,8 +59,8 @@ impl MeshStream {
                 Format::Obj | Format::Off => None,
             })
         };
-        let body = create().map_err(|e| at(SaveProblem::Create(e)))?;
-        let body = body.ok_or_else(|| at(SaveProblem::NotInPieces(format)))?;
+        let body = create().map_err(|e| at(SaveErrorKind::Create(e)))?;
+        let body = body.ok_or_else(|| at(SaveErrorKind::NotInPieces(format)))?;
         Ok(MeshStream { path: path.to_path_buf(), coordinates, vertices: 0, triangles: 0, body })
     }
 
@@ -79,14 +79,14 @@ impl MeshStream {
         let single = matches!(self.body, Body::Stl(_)) || self.coordinates == Coordinates::F32;
         let fits = |x: f64| if single { (x as f32).is_finite() } else { x.is_finite() };
         if let Some(vertex) = own.iter().position(|v| !v.iter().all(|&x| fits(x))) {
-            return Err(self.failed(SaveProblem::Coordinate { vertex, position: own[vertex] }));
+            return Err(self.failed(SaveErrorKind::Coordinate { vertex, position: own[vertex] }));
         }
         let first = self.vertices as i64 - vertices.start as i64;
         self.vertices += own.len() as u64;
         self.triangles += triangles.len() as u64;
         let limit = u64::from(u32::MAX);
         if self.vertices > limit || matches!(self.body, Body::Stl(_)) && self.triangles > limit {
-            return Err(self.failed(SaveProblem::TooManyTriangles));
+            return Err(self.failed(SaveErrorKind::TooManyTriangles));
         }
         let written = match &mut self.body {
             Body::Ply([body, faces]) => {
@@ -97,7 +97,7 @@ impl MeshStream {
             }
             Body::Stl(file) => stl::write_triangles(triangles.map(|t| mesh.corners(t)), file),
         };
-        written.map_err(|e| self.failed(SaveProblem::Write(e)))
+        written.map_err(|e| self.failed(SaveErrorKind::Write(e)))
     }
 
     /// Forgets all that was added.
@@ -115,7 +115,7 @@ impl MeshStream {
             Body::Ply(parts) => parts.iter_mut().try_for_each(|part| empty(part, 0)),
             Body::Stl(file) => empty(file, stl::HEAD as u64),
         };
-        emptied.map_err(|e| self.failed(SaveProblem::Write(e)))
+        emptied.map_err(|e| self.failed(SaveErrorKind::Write(e)))
     }
 
     /// Completes the file. Returns the numbers of vertices and triangles.
@@ -143,11 +143,11 @@ impl MeshStream {
                 }
             }
         };
-        finish().map_err(|e| SaveError { path: path.clone(), problem: SaveProblem::Write(e) })?;
+        finish().map_err(|e| SaveError { path: path.clone(), kind: SaveErrorKind::Write(e) })?;
         Ok((vertices, triangles))
     }
 
-    fn failed(&self, problem: SaveProblem) -> SaveError {
-        SaveError { path: self.path.clone(), problem }
+    fn failed(&self, kind: SaveErrorKind) -> SaveError {
+        SaveError { path: self.path.clone(), kind }
     }
 }

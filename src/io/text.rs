@@ -6,7 +6,7 @@ use std::ops::Range;
 use memchr::{memchr_iter, memchr2};
 
 use super::Format;
-use super::error::{Fault, Place, Problem, quote};
+use super::error::{LoadErrorKind, Location, ReadError, quote};
 use super::loaded::NonFinite;
 
 /// The longest line that is read. Polygons of a million corners fit; a binary file without line ends
@@ -44,13 +44,13 @@ impl<R: BufRead> Text<R> {
     }
 
     /// Goes to the next line. `false` at the end of the file.
-    pub(super) fn next_line(&mut self) -> Result<bool, Fault> {
+    pub(super) fn next_line(&mut self) -> Result<bool, ReadError> {
         self.line.clear();
         self.append_line()
     }
 
     /// Appends the next line to the present one. `false` at the end of the file.
-    pub(super) fn append_line(&mut self) -> Result<bool, Fault> {
+    pub(super) fn append_line(&mut self) -> Result<bool, ReadError> {
         let start = self.line.len();
         self.next = 0;
         let Some(ended) = read_line(&mut self.reader, LONGEST_LINE, &mut self.line)? else {
@@ -58,7 +58,7 @@ impl<R: BufRead> Text<R> {
         };
         self.number += 1;
         let not_text = |reason: &str| {
-            Problem::WrongFormat { format: self.format, reason: reason.into() }.on_line(self.number)
+            LoadErrorKind::WrongFormat { format: self.format, reason: reason.into() }.on_line(self.number)
         };
         if self.line[start..].contains(&0) {
             return Err(not_text("binary data stands where text belongs"));
@@ -88,8 +88,8 @@ impl<R: BufRead> Text<R> {
     }
 
     /// `problem` on the present line.
-    pub(super) fn fault(&self, problem: Problem) -> Fault {
-        problem.on_line(self.number)
+    pub(super) fn error(&self, kind: LoadErrorKind) -> ReadError {
+        kind.on_line(self.number)
     }
 
     /// The bytes of a word.
@@ -108,7 +108,7 @@ impl<R: BufRead> Text<R> {
     }
 
     /// The next word of the file, on this line or on a later one; `None` at the end.
-    pub(super) fn word(&mut self) -> Result<Option<Range<usize>>, Fault> {
+    pub(super) fn word(&mut self) -> Result<Option<Range<usize>>, ReadError> {
         loop {
             if let Some(word) = self.word_on_line() {
                 return Ok(Some(word));
@@ -120,20 +120,20 @@ impl<R: BufRead> Text<R> {
     }
 
     /// The next word of the file, which must be there.
-    pub(super) fn expect_word(&mut self, expected: &str) -> Result<Range<usize>, Fault> {
+    pub(super) fn expect_word(&mut self, expected: &str) -> Result<Range<usize>, ReadError> {
         let word = self.word()?;
-        word.ok_or_else(|| self.fault(Problem::truncated(expected)))
+        word.ok_or_else(|| self.error(LoadErrorKind::truncated(expected)))
     }
 
     /// The next word as a number. The first that is not finite is remembered.
-    pub(super) fn coordinate(&mut self, expected: &str) -> Result<f64, Fault> {
+    pub(super) fn coordinate(&mut self, expected: &str) -> Result<f64, ReadError> {
         let word = self.expect_word(expected)?;
         let bytes = self.bytes(word);
         let number = parse::<f64>(bytes).or_else(|| is_not_finite(bytes).then_some(f64::NAN));
-        let Some(x) = number else { return Err(self.fault(Problem::syntax(bytes, expected))) };
+        let Some(x) = number else { return Err(self.error(LoadErrorKind::syntax(bytes, expected))) };
         if !x.is_finite() && self.non_finite.is_none() {
-            let place = Place::Line(self.number);
-            self.non_finite = Some(NonFinite { place, coordinate: quote(bytes) });
+            let location = Location::Line(self.number);
+            self.non_finite = Some(NonFinite { location, coordinate: quote(bytes) });
         }
         Ok(x)
     }
@@ -144,17 +144,17 @@ impl<R: BufRead> Text<R> {
     }
 
     /// The next word as an integer.
-    pub(super) fn integer(&mut self, expected: &str) -> Result<i64, Fault> {
+    pub(super) fn integer(&mut self, expected: &str) -> Result<i64, ReadError> {
         let word = self.expect_word(expected)?;
         let bytes = self.bytes(word);
-        parse(bytes).ok_or_else(|| self.fault(Problem::syntax(bytes, expected)))
+        parse(bytes).ok_or_else(|| self.error(LoadErrorKind::syntax(bytes, expected)))
     }
 
     /// The next word as a count.
-    pub(super) fn count(&mut self, expected: &str) -> Result<u64, Fault> {
+    pub(super) fn count(&mut self, expected: &str) -> Result<u64, ReadError> {
         let word = self.expect_word(expected)?;
         let bytes = self.bytes(word);
-        parse(bytes).ok_or_else(|| self.fault(Problem::syntax(bytes, expected)))
+        parse(bytes).ok_or_else(|| self.error(LoadErrorKind::syntax(bytes, expected)))
     }
 
     /// Makes `word`, of the present line, the next one.
@@ -170,7 +170,7 @@ impl<R: BufRead> Text<R> {
 
 impl<R: BufRead + Seek> Text<R> {
     /// Goes back to the beginning of the file.
-    pub(super) fn rewind(&mut self) -> Result<(), Fault> {
+    pub(super) fn rewind(&mut self) -> Result<(), ReadError> {
         self.reader.seek(SeekFrom::Start(0))?;
         self.line.clear();
         (self.number, self.next) = (0, 0);

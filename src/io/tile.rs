@@ -16,23 +16,24 @@ pub struct Tile {
 
 /// Why tiles cannot be merged.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: {problem}", .path.display())]
+#[error("{}: {kind}", .path.display())]
 pub struct MergeError {
     /// The tile, or the output.
     pub path: PathBuf,
-    /// What is wrong.
-    pub problem: MergeProblem,
+    /// The cause.
+    #[source]
+    pub kind: MergeErrorKind,
 }
 
-/// What is wrong with a tile.
+/// The cause of a [`MergeError`].
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum MergeProblem {
+pub enum MergeErrorKind {
     /// The file cannot be read.
     #[error("the file cannot be read ({0}); check the path and the permissions")]
-    Read(io::Error),
+    Read(#[source] io::Error),
     /// The file is no tile.
-    #[error("this is not a tile; tiles are the .ply, .stl and .vdb files that exocarp offset --tile writes")]
+    #[error("this is not a tile, a .ply, .stl or .vdb file with one share of an offset")]
     NotATile,
     /// It is a tile of another input, or was made with other settings.
     #[error("this tile is of another model, or was made with other settings; make all tiles alike")]
@@ -59,7 +60,7 @@ pub enum MergeProblem {
     Empty,
     /// The output cannot be written.
     #[error("writing failed ({0}); check the free space, the output was left as it was")]
-    Write(io::Error),
+    Write(#[source] io::Error),
     /// The whole is too large for its format.
     #[error("the whole has more than {} vertices or triangles, the limit of the format", u32::MAX)]
     TooLarge,
@@ -85,18 +86,18 @@ impl Tile {
 
 /// Checks that tiles in the order of their numbers are all those of one work, each once.
 pub(crate) fn check_complete(tiles: &[(&Path, Tile)]) -> Result<(), MergeError> {
-    let failed = |path: &Path, problem| Err(MergeError { path: path.to_path_buf(), problem });
+    let failed = |path: &Path, kind| Err(MergeError { path: path.to_path_buf(), kind });
     let Some(&(first, Tile { of, job, .. })) = tiles.first() else {
-        return failed(Path::new(""), MergeProblem::Missing { number: 1, of: 1 });
+        return failed(Path::new(""), MergeErrorKind::Missing { number: 1, of: 1 });
     };
     if let Some(other) = tiles.iter().find(|(_, tile)| (tile.of, tile.job) != (of, job)) {
-        return failed(other.0, MergeProblem::OtherJob);
+        return failed(other.0, MergeErrorKind::OtherJob);
     }
     if let Some(pair) = tiles.windows(2).find(|pair| pair[0].1.number == pair[1].1.number) {
-        return failed(pair[1].0, MergeProblem::Twice(pair[1].1.number));
+        return failed(pair[1].0, MergeErrorKind::Twice(pair[1].1.number));
     }
     match (1..=of).find(|n| !tiles.iter().any(|(_, tile)| tile.number == *n)) {
-        Some(number) => failed(first, MergeProblem::Missing { number, of }),
+        Some(number) => failed(first, MergeErrorKind::Missing { number, of }),
         None => Ok(()),
     }
 }

@@ -1,10 +1,87 @@
 //! Why an offset cannot be made, told before the work starts where that is possible.
 
-use super::SignMode;
+use super::memory::MemoryError;
+use super::settings::{SettingsError, SignMode};
 use crate::band::BandSettings;
+use crate::contour::{ContourError, Precision};
 use crate::distance::{SignedDistance, largest_depth};
+use crate::edge::TooManyEdges;
 use crate::mesh::{MeshError, Topology, TriMesh};
 use crate::run::{Cancelled, RunSettings};
+use crate::vdb::VdbError;
+
+/// Why an offset, its band or a part of it could not be made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum OffsetError {
+    /// A setting makes no sense, by itself or for this mesh.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The mesh is not the boundary of a solid.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// Nothing is left at this distance, or nothing that the lattice sees.
+    #[error(transparent)]
+    Empty(#[from] EmptyResult),
+    /// The work would not fit into memory.
+    #[error(transparent)]
+    Memory(#[from] MemoryError),
+    /// The surface crosses more lattice edges than 32-bit numbers can count.
+    #[error(transparent)]
+    TooManyEdges(#[from] TooManyEdges),
+    /// The result has more vertices than 32-bit numbers can count.
+    #[error("the result has more than 4294967295 vertices; choose a larger voxel size")]
+    TooManyVertices,
+    /// The coordinates of the chosen precision are too coarse for the voxel size.
+    #[error(
+        "coordinates of size {far} are too coarse in {precision:?} for voxels of size {voxel}; \
+         choose 64-bit coordinates, larger voxels, or move the model to the origin"
+    )]
+    CoarseCoordinates {
+        /// The largest coordinate, in model units.
+        far: f64,
+        /// The voxel size, in model units.
+        voxel: f64,
+        /// The precision that was asked for.
+        precision: Precision,
+    },
+    /// OpenVDB could not hold the band.
+    #[error(transparent)]
+    Vdb(VdbError),
+    /// The receiver of a streamed mesh failed.
+    #[error(transparent)]
+    Sink(Box<dyn std::error::Error + Send + Sync>),
+    /// The run was cancelled.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl From<Cancelled> for OffsetError {
+    fn from(Cancelled: Cancelled) -> Self {
+        OffsetError::Cancelled
+    }
+}
+
+impl From<ContourError> for OffsetError {
+    fn from(error: ContourError) -> Self {
+        match error {
+            ContourError::Cancelled(cancelled) => cancelled.into(),
+            ContourError::TooManyVertices(_) => OffsetError::TooManyVertices,
+            ContourError::TooFarFromOrigin { far, voxel, precision } => {
+                OffsetError::CoarseCoordinates { far, voxel, precision }
+            }
+        }
+    }
+}
+
+impl From<VdbError> for OffsetError {
+    fn from(error: VdbError) -> Self {
+        match error {
+            VdbError::Cancelled => OffsetError::Cancelled,
+            other => OffsetError::Vdb(other),
+        }
+    }
+}
 
 /// The input is not the boundary of a solid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -27,7 +104,7 @@ pub enum InputError {
     /// Edges with a single triangle.
     #[error(
         "the mesh is not closed: {count} boundary edges, the first from ({:.6}, {:.6}, {:.6}) to ({:.6}, \
-         {:.6}, {:.6}); close its holes, or go ahead all the same with --sign pseudonormal",
+         {:.6}, {:.6}); close its holes",
         .first[0][0], .first[0][1], .first[0][2], .first[1][0], .first[1][1], .first[1][2]
     )]
     Open {
@@ -39,8 +116,7 @@ pub enum InputError {
     /// Edges whose triangles do not agree on the outside.
     #[error(
         "the mesh is not consistently oriented: {count} edges whose triangles run the same way, the first \
-         from ({:.6}, {:.6}, {:.6}) to ({:.6}, {:.6}, {:.6}); reorient its triangles, or go ahead all the \
-         same with --sign pseudonormal",
+         from ({:.6}, {:.6}, {:.6}) to ({:.6}, {:.6}, {:.6}); reorient its triangles",
         .first[0][0], .first[0][1], .first[0][2], .first[1][0], .first[1][1], .first[1][2]
     )]
     Misoriented {

@@ -1,10 +1,10 @@
 //! What an offset takes, told before the band is made.
 
+use super::error::OffsetError;
 use crate::band::narrow_band::StoredPart;
 use crate::band::{BandSettings, count_layers};
 use crate::distance::SignedDistance;
 use crate::edge::TooManyEdges;
-use crate::error::Error;
 use crate::geom::aabb::Aabb;
 use crate::lattice::Lattice;
 use crate::mesh::{TriMesh, measure};
@@ -15,7 +15,7 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "voxel size {voxel} needs about {} of memory, and {} are allowed; the smallest voxel size that fits is \
-     about {smallest_voxel:.3e} (or raise --max-memory)",
+     about {smallest_voxel:.3e}",
     Bytes(*.needed), Bytes(*.allowed)
 )]
 pub struct MemoryError {
@@ -93,14 +93,14 @@ fn fixed_bytes(mesh: &TriMesh) -> u64 {
 /// Checks that an offset fits into memory, with what is kept of its band.
 ///
 /// # Errors
-/// [`Error::Memory`] when it does not; [`Error::Cancelled`].
+/// [`OffsetError::Memory`] when it does not; [`OffsetError::Cancelled`].
 pub(super) fn check_memory(
     distance: &SignedDistance,
     settings: &BandSettings,
     stored: StoredPart,
     max_memory: Option<u64>,
     run: &RunSettings,
-) -> Result<(), Error> {
+) -> Result<(), OffsetError> {
     let Some(allowed) = max_memory.or_else(available_memory) else { return Ok(()) };
     let (mesh, voxel) = (distance.mesh(), settings.lattice.voxel);
     let wide = settings.half_width - 1.0;

@@ -24,18 +24,17 @@ mod tests;
 mod error;
 
 pub use crate::contour::Precision;
-pub use error::{EmptyResult, InputError};
+pub use error::{EmptyResult, InputError, OffsetError};
 pub use job::job;
 pub use memory::{MemoryError, available_memory};
 pub use settings::{Length, OffsetSettings, SettingsError, SignMode, Tolerance, VoxelSize};
 pub use statistics::{EngineTimes, OffsetStatistics, VdbStatistics};
-pub use stream::{Cut, PieceSink, offset_in_slabs};
+pub use stream::{Cut, PieceSink, SinkError, offset_in_slabs};
 
 use crate::band::BandSettings;
 use crate::band::narrow_band::{self, StoredPart};
 use crate::contour::SlabContour;
 use crate::distance::SignedDistance;
-use crate::error::Error;
 use crate::mesh::{Topology, TriMesh};
 use crate::run::{Phase, RunSettings};
 use crate::unseen::Unseen;
@@ -61,14 +60,20 @@ pub struct OffsetResult {
 /// outside.
 ///
 /// # Errors
-/// - [`Error::Settings`]: a distance that is not finite, a voxel size that is not positive.
-/// - [`Error::Input`]: the mesh is empty, or not closed or not consistently oriented
+/// - [`OffsetError::Settings`]: a distance that is not finite, a voxel size that is not positive.
+/// - [`OffsetError::Input`]: the mesh is empty, or not closed or not consistently oriented
 ///   ([`SignMode::Pseudonormal`] goes ahead all the same).
-/// - [`Error::Empty`]: shrinking leaves nothing.
-/// - [`Error::Memory`]: the band would not fit.
-/// - [`Error::Contour`], [`Error::TooManyEdges`]: the lattice is too fine for the precision or the indices.
-/// - [`Error::Cancelled`].
-pub fn offset(mesh: &TriMesh, settings: &OffsetSettings, run: &RunSettings) -> Result<OffsetResult, Error> {
+/// - [`OffsetError::Empty`]: shrinking leaves nothing.
+/// - [`OffsetError::Memory`]: the band would not fit.
+/// - [`OffsetError::CoarseCoordinates`], [`OffsetError::TooManyEdges`],
+///   [`OffsetError::TooManyVertices`]: the lattice is too fine for the precision or the indices.
+/// - [`OffsetError::Vdb`]: OpenVDB cannot hold the band that was to be kept.
+/// - [`OffsetError::Cancelled`].
+pub fn offset(
+    mesh: &TriMesh,
+    settings: &OffsetSettings,
+    run: &RunSettings,
+) -> Result<OffsetResult, OffsetError> {
     Prepared::with(mesh, settings, run, |prepared| {
         let stored = StoredPart::by(settings);
         let fits = |band_settings: &BandSettings| {
@@ -90,7 +95,7 @@ pub fn offset_band(
     mesh: &TriMesh,
     settings: &OffsetSettings,
     run: &RunSettings,
-) -> Result<OffsetResult, Error> {
+) -> Result<OffsetResult, OffsetError> {
     Prepared::with(mesh, settings, run, |prepared| {
         let Prepared { distance, ref band_settings, times, .. } = *prepared;
         let stored = StoredPart::by(&OffsetSettings { keep_band: true, ..settings.clone() });
@@ -98,7 +103,7 @@ pub fn offset_band(
         let mut statistics = OffsetStatistics::new(band_settings, times);
         let started = Instant::now();
         let mut stored = StoredBand::new(band_settings, settings)?;
-        statistics.add_band(&narrow_band::store::<Error>(distance, band_settings, &mut stored, run)?);
+        statistics.add_band(&narrow_band::store::<OffsetError>(distance, band_settings, &mut stored, run)?);
         let band = stored.finish();
         statistics.times.band += started.elapsed().as_secs_f64();
         if statistics.vdb.leaves == 0 {
@@ -127,8 +132,8 @@ impl Prepared<'_> {
         mesh: &TriMesh,
         settings: &OffsetSettings,
         run: &RunSettings,
-        work: impl FnOnce(&Prepared<'_>) -> Result<T, Error>,
-    ) -> Result<T, Error> {
+        work: impl FnOnce(&Prepared<'_>) -> Result<T, OffsetError>,
+    ) -> Result<T, OffsetError> {
         error::check_mesh(mesh)?;
         let topology = run.install(|| Topology::new(mesh));
         error::check_input(mesh, &topology, settings.sign)?;
@@ -151,7 +156,7 @@ fn on_lattice(
     band_settings: &BandSettings,
     times: EngineTimes,
     run: &RunSettings,
-) -> Result<OffsetResult, Error> {
+) -> Result<OffsetResult, OffsetError> {
     let mut statistics = OffsetStatistics::new(band_settings, times);
     let mut stored = settings.keep_band.then(|| StoredBand::new(band_settings, settings)).transpose()?;
     let done = on_slab(distance, settings, band_settings, stored.as_mut(), &mut statistics, run)?;

@@ -2,13 +2,12 @@
 
 use super::stored_band::StoredBand;
 use super::surface::OffsetSurface;
-use super::{OffsetSettings, OffsetStatistics};
+use super::{OffsetError, OffsetSettings, OffsetStatistics};
 use crate::band::narrow_band::{self, BandStore, NarrowBand};
 use crate::band::{BandSettings, NearTriangles, grid_nodes};
 use crate::contour::{ContourSettings, STRAY, SlabContour, contour_slab};
 use crate::distance::SignedDistance;
 use crate::edge::{EdgeNumbers, EdgeSettings, RootMethod, solve_by};
-use crate::error::Error;
 use crate::geom::aabb::Aabb;
 use crate::run::RunSettings;
 use crate::unseen::{self, Suspects};
@@ -24,9 +23,9 @@ pub(super) fn on_slab(
     stored: Option<&mut StoredBand>,
     statistics: &mut OffsetStatistics,
     run: &RunSettings,
-) -> Result<Option<(SlabContour, Suspects)>, Error> {
+) -> Result<Option<(SlabContour, Suspects)>, OffsetError> {
     let BandSettings { lattice, r, slab, .. } = *band_settings;
-    let store = stored.map(|stored| -> &mut (dyn BandStore<Error> + Send) { stored });
+    let store = stored.map(|stored| -> &mut (dyn BandStore<OffsetError> + Send) { stored });
     let started = Instant::now();
     let NarrowBand { signs, near, counts } = narrow_band::build(distance, band_settings, store, run)?;
     statistics.add_band(&counts);

@@ -5,13 +5,12 @@ use super::memory::{MemoryError, check_countable, leaves_within};
 use super::stages::on_slab;
 use super::stored_band::StoredBand;
 use super::voxel_refinement::until_seen;
-use super::{OffsetResult, OffsetSettings, OffsetStatistics, Prepared};
+use super::{OffsetError, OffsetResult, OffsetSettings, OffsetStatistics, Prepared};
 use crate::band::{BandSettings, count_layers};
 use crate::contour::{SlabContour, halo};
-use crate::error::Error;
 use crate::lattice::Slab;
 use crate::mesh::TriMesh;
-use crate::run::RunSettings;
+use crate::run::{Cancelled, RunSettings};
 use crate::unseen::{Suspects, Unseen};
 use std::time::Instant;
 
@@ -29,26 +28,29 @@ pub enum Cut {
     },
 }
 
+/// The error of a receiver of a streamed mesh.
+pub type SinkError = Box<dyn std::error::Error + Send + Sync>;
+
 /// Takes the pieces of the result of [`offset_in_slabs`], in their order.
 pub trait PieceSink {
     /// Forgets all pieces: they come again on a finer lattice.
     ///
     /// # Errors
     /// What ends the run.
-    fn restart(&mut self) -> Result<(), Error>;
+    fn restart(&mut self) -> Result<(), SinkError>;
 
     /// Takes the next piece. Its vertices and triangles follow those of the piece before.
     ///
     /// # Errors
     /// What ends the run.
-    fn piece(&mut self, piece: &SlabContour) -> Result<(), Error>;
+    fn piece(&mut self, piece: &SlabContour) -> Result<(), SinkError>;
 }
 
 /// The same as [`offset`](super::offset()), in slabs. The pieces, one after the other, are the mesh that it returns; the
 /// mesh of the result stays empty. With a tile, the statistics and the band are the tile's.
 ///
 /// # Errors
-/// As [`offset`](super::offset()); what `sink` returns; [`Error::Memory`] when no slab is thin enough for the memory. A
+/// As [`offset`](super::offset()); what `sink` returns; [`OffsetError::Memory`] when no slab is thin enough for the memory. A
 /// tile that the surface does not pass is no error.
 ///
 /// # Panics
@@ -59,14 +61,14 @@ pub fn offset_in_slabs(
     cut: Cut,
     sink: &mut dyn PieceSink,
     run: &RunSettings,
-) -> Result<OffsetResult, Error> {
+) -> Result<OffsetResult, OffsetError> {
     if let Cut::Tile { number, of } = cut {
         assert!((1..=of).contains(&number), "there is no tile {number} of {of}");
     }
     Prepared::with(mesh, settings, run, |prepared| {
         let Prepared { distance, settings, run, .. } = *prepared;
-        let on_lattice = |band_settings: &BandSettings, times| -> Result<OffsetResult, Error> {
-            sink.restart()?;
+        let on_lattice = |band_settings: &BandSettings, times| -> Result<OffsetResult, OffsetError> {
+            sink.restart().map_err(sink_error)?;
             let mut statistics = OffsetStatistics::new(band_settings, times);
             let stored = || StoredBand::new(band_settings, settings);
             let mut stored = settings.keep_band.then(stored).transpose()?;
@@ -82,7 +84,7 @@ pub fn offset_in_slabs(
                 if let Some((contour, of_slab)) = done {
                     is_empty &= contour.triangles.is_empty();
                     lost.append(of_slab);
-                    sink.piece(&contour)?;
+                    sink.piece(&contour).map_err(sink_error)?;
                 }
             }
             if is_empty && matches!(cut, Cut::Memory(_)) {
@@ -98,8 +100,13 @@ pub fn offset_in_slabs(
     })
 }
 
+/// A receiver that was cancelled has cancelled the run.
+fn sink_error(error: SinkError) -> OffsetError {
+    if error.is::<Cancelled>() { OffsetError::Cancelled } else { OffsetError::Sink(error) }
+}
+
 /// The slabs to work off.
-fn cut_slabs(prepared: &Prepared<'_>, settings: &BandSettings, cut: Cut) -> Result<Vec<Slab>, Error> {
+fn cut_slabs(prepared: &Prepared<'_>, settings: &BandSettings, cut: Cut) -> Result<Vec<Slab>, OffsetError> {
     let Prepared { distance, run, .. } = *prepared;
     check_countable(distance.mesh(), settings)?;
     let halo = halo(&prepared.settings.contour(settings.lattice));

@@ -178,7 +178,9 @@ fn every_closed_model_gives_a_clean_mesh() {
                     let audit = audit(&result.mesh);
                     assert!(audit.is_sound(), "{} {fraction}: {audit:?}", shape.name);
                 }
-                Err(Error::Empty(empty)) => assert!(fraction < 0.0, "{} {fraction}: {empty}", shape.name),
+                Err(OffsetError::Empty(empty)) => {
+                    assert!(fraction < 0.0, "{} {fraction}: {empty}", shape.name)
+                }
                 Err(error) => panic!("{} {fraction}: {error}", shape.name),
             }
         }
@@ -222,16 +224,16 @@ fn a_grown_offset_has_a_larger_volume() {
 fn an_open_mesh_is_refused_with_its_first_boundary_edge() {
     let mesh = shapes::wave(4);
     let error = offset(&mesh, &settings(0.1, 0.1), &run(1)).unwrap_err();
-    let Error::Input(InputError::Open { count, .. }) = &error else { panic!("{error}") };
+    let OffsetError::Input(InputError::Open { count, .. }) = &error else { panic!("{error}") };
     assert!(*count > 0);
     assert!(error.to_string().contains("boundary edges"), "{error}");
 
     let mut twisted = shapes::cube(1);
     twisted.triangles[0].swap(0, 1);
     let error = offset(&twisted, &settings(0.1, 0.1), &run(1)).unwrap_err();
-    assert!(matches!(error, Error::Input(InputError::Misoriented { count: 3, .. })), "{error}");
+    assert!(matches!(error, OffsetError::Input(InputError::Misoriented { count: 3, .. })), "{error}");
     let error = offset(&TriMesh::default(), &settings(0.1, 0.1), &run(1)).unwrap_err();
-    assert!(matches!(error, Error::Input(InputError::NoTriangles)), "{error}");
+    assert!(matches!(error, OffsetError::Input(InputError::NoTriangles)), "{error}");
 }
 
 #[test]
@@ -273,18 +275,18 @@ fn the_two_sides_of_a_sheet_have_no_inside() {
     mesh.triangles.extend(other_side);
     for sign in [SignMode::Closed, SignMode::Pseudonormal] {
         let error = offset(&mesh, &OffsetSettings { sign, ..settings(0.1, 0.1) }, &run(1)).unwrap_err();
-        assert!(matches!(error, Error::Input(InputError::Doubled { .. })), "{error}");
+        assert!(matches!(error, OffsetError::Input(InputError::Doubled { .. })), "{error}");
     }
     // One side more is a solid again, though edges have three triangles.
     mesh.triangles.extend(shapes::cube(2).triangles);
     let result = offset(&mesh, &settings(0.1, 0.1), &run(1));
-    assert!(!matches!(result, Err(Error::Input(InputError::Doubled { .. }))));
+    assert!(!matches!(result, Err(OffsetError::Input(InputError::Doubled { .. }))));
 }
 
 #[test]
 fn shrinking_beyond_everything_names_the_depth() {
     let error = offset(&shapes::cube(1), &settings(-1.5, 0.1), &run(1)).unwrap_err();
-    let Error::Empty(EmptyResult::TooDeep { depth, .. }) = error else { panic!("{error}") };
+    let OffsetError::Empty(EmptyResult::TooDeep { depth, .. }) = error else { panic!("{error}") };
     assert!((depth - 1.0).abs() < 2e-3, "{depth}");
     // Something is left, a cube of side 0.02, but it slips between the nodes.
     let mut mesh = shapes::cube(1);
@@ -292,7 +294,7 @@ fn shrinking_beyond_everything_names_the_depth() {
         *v += 0.17;
     }
     let error = offset(&mesh, &settings(-0.99, 0.34), &run(1)).unwrap_err();
-    assert!(matches!(error, Error::Empty(EmptyResult::TooThin { .. })), "{error}");
+    assert!(matches!(error, OffsetError::Empty(EmptyResult::TooThin { .. })), "{error}");
 }
 
 #[test]
@@ -308,7 +310,7 @@ fn settings_that_make_no_sense_are_refused() {
         OffsetSettings { voxel: VoxelSize::Resolution(0), ..settings(0.1, 0.1) },
     ] {
         let error = offset(&mesh, &wrong, &run(1)).unwrap_err();
-        assert!(matches!(error, Error::Settings(_)), "{wrong:?}: {error}");
+        assert!(matches!(error, OffsetError::Settings(_)), "{wrong:?}: {error}");
     }
 }
 
@@ -320,7 +322,8 @@ fn a_tolerance_that_coordinates_cannot_keep_is_refused_with_one_that_they_can() 
         let mut mesh = shapes::cube(1);
         for tolerance in [Tolerance::Units(1e-300), Tolerance::Voxels(1e-300)] {
             let error = offset(&mesh, &with(tolerance, precision), &run(1)).unwrap_err();
-            let Error::Settings(SettingsError::FineTolerance { bits: found, smallest, .. }) = error else {
+            let OffsetError::Settings(SettingsError::FineTolerance { bits: found, smallest, .. }) = error
+            else {
                 panic!("{error}")
             };
             assert_eq!(found, bits);
@@ -330,7 +333,7 @@ fn a_tolerance_that_coordinates_cannot_keep_is_refused_with_one_that_they_can() 
             // Farther from the origin, it would be larger.
             mesh.vertices.iter_mut().for_each(|v| v[0] += 8.0);
             let error = offset(&mesh, &with(Tolerance::Units(smallest), precision), &run(1)).unwrap_err();
-            assert!(matches!(error, Error::Settings(SettingsError::FineTolerance { .. })), "{error}");
+            assert!(matches!(error, OffsetError::Settings(SettingsError::FineTolerance { .. })), "{error}");
         }
     }
 }
@@ -339,7 +342,9 @@ fn a_tolerance_that_coordinates_cannot_keep_is_refused_with_one_that_they_can() 
 fn a_voxel_size_beyond_memory_is_refused_with_one_that_fits() {
     let limited = |voxel| OffsetSettings { max_memory: Some(64 << 20), ..settings(0.1, voxel) };
     let error = offset(&shapes::cube(1), &limited(0.001), &run(1)).unwrap_err();
-    let Error::Memory(MemoryError { needed, allowed, smallest_voxel, .. }) = error else { panic!("{error}") };
+    let OffsetError::Memory(MemoryError { needed, allowed, smallest_voxel, .. }) = error else {
+        panic!("{error}")
+    };
     assert!(needed > allowed && smallest_voxel > 0.001);
     assert!(offset(&shapes::cube(1), &limited(smallest_voxel * 1.01), &run(2)).is_ok());
 }

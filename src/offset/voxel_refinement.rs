@@ -1,8 +1,7 @@
 //! Finer lattices until nothing is unseen.
 
-use super::{EmptyResult, EngineTimes, OffsetResult, Prepared};
+use super::{EmptyResult, EngineTimes, OffsetError, OffsetResult, Prepared};
 use crate::band::BandSettings;
-use crate::error::Error;
 use crate::lattice::Lattice;
 
 /// What `on_lattice` makes on the lattice that was asked for, or on one with half its voxel size, and so on, as often as
@@ -11,8 +10,8 @@ use crate::lattice::Lattice;
 pub(super) fn until_seen(
     prepared: &Prepared<'_>,
     fits: impl Fn(&BandSettings) -> bool,
-    mut on_lattice: impl FnMut(&BandSettings, EngineTimes) -> Result<OffsetResult, Error>,
-) -> Result<OffsetResult, Error> {
+    mut on_lattice: impl FnMut(&BandSettings, EngineTimes) -> Result<OffsetResult, OffsetError>,
+) -> Result<OffsetResult, OffsetError> {
     let Prepared { mut band_settings, mut times, settings, .. } = *prepared;
     for halvings in 0.. {
         let result = on_lattice(&band_settings, times);
@@ -23,7 +22,7 @@ pub(super) fn until_seen(
                 band_settings = finer;
             }
             // All of it is unseen.
-            (Err(Error::Empty(EmptyResult::TooThin { .. })), Some(finer)) => band_settings = finer,
+            (Err(OffsetError::Empty(EmptyResult::TooThin { .. })), Some(finer)) => band_settings = finer,
             (Ok(mut result), _) => {
                 result.statistics.halvings = halvings;
                 return Ok(result);

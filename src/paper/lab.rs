@@ -1,13 +1,13 @@
 //! What the tables have in common: models, offsets, and the stages before contouring.
 
+use super::PaperError;
 use super::PaperSettings;
 use super::models::{Model, PaperModel};
 use crate::band::narrow_band::{self, NarrowBand};
 use crate::band::{BandSettings, NearTriangles, SignField};
 use crate::distance::SignedDistance;
 use crate::edge::EdgeNumbers;
-use crate::error::Error;
-use crate::offset::{Length, OffsetResult, OffsetSettings, VoxelSize, offset};
+use crate::offset::{Length, OffsetError, OffsetResult, OffsetSettings, VoxelSize, offset};
 use crate::run::RunSettings;
 
 /// The settings and the run of a measurement.
@@ -26,12 +26,12 @@ pub(super) struct Field {
 
 impl Lab<'_> {
     /// What stands for a model of the paper.
-    pub fn model(&self, of: PaperModel) -> Result<Model, Error> {
+    pub fn model(&self, of: PaperModel) -> Result<Model, PaperError> {
         self.refined_model(of, 1)
     }
 
     /// The same with the sides of its triangles divided by `cuts`.
-    pub fn refined_model(&self, of: PaperModel, cuts: u32) -> Result<Model, Error> {
+    pub fn refined_model(&self, of: PaperModel, cuts: u32) -> Result<Model, PaperError> {
         Model::load(of, &self.settings.files, cuts, self.run)
     }
 
@@ -50,7 +50,7 @@ impl Lab<'_> {
     /// `largest`, for tables whose rows share a grid: in the paper the intersected edges of the
     /// warrior grow from 85,032 at 0.02 to 463,838 at 0.32, and on a grid fitted to each offset
     /// they would hardly change.
-    pub fn shared_grid(&self, model: &Model, largest: f64, resolution: u32) -> Result<VoxelSize, Error> {
+    pub fn shared_grid(&self, model: &Model, largest: f64, resolution: u32) -> Result<VoxelSize, PaperError> {
         let fitted = self.offset_settings(model, largest, VoxelSize::Resolution(resolution));
         Ok(VoxelSize::Units(fitted.resolve(&model.mesh)?.lattice.voxel))
     }
@@ -66,11 +66,11 @@ impl Lab<'_> {
         model: &Model,
         fraction: f64,
         voxel: VoxelSize,
-    ) -> Result<Option<OffsetResult>, Error> {
+    ) -> Result<Option<OffsetResult>, PaperError> {
         match offset(&model.mesh, &self.offset_settings(model, fraction, voxel), self.run) {
             Ok(result) => Ok(Some(result)),
-            Err(Error::Empty(_)) => Ok(None),
-            Err(error) => Err(error),
+            Err(OffsetError::Empty(_)) => Ok(None),
+            Err(error) => Err(error.into()),
         }
     }
 
@@ -86,10 +86,10 @@ impl Lab<'_> {
         distance: &SignedDistance,
         fraction: f64,
         voxel: VoxelSize,
-    ) -> Result<Option<Field>, Error> {
+    ) -> Result<Option<Field>, PaperError> {
         let settings = self.offset_settings(model, fraction, voxel).resolve(&model.mesh)?;
         let NarrowBand { signs, near, .. } =
-            narrow_band::build::<Error>(distance, &settings, None, self.run)?;
+            narrow_band::build::<PaperError>(distance, &settings, None, self.run)?;
         let numbers = self.run.install(|| EdgeNumbers::new(&signs))?;
         Ok((!numbers.is_empty()).then_some(Field { settings, signs, numbers, near }))
     }

@@ -15,6 +15,7 @@
 //! Most of the paper's models are not public. `models` says which model stands for which; a reader
 //! of a table must hold figures against each other in kind, not in digits.
 
+mod error;
 mod lab;
 mod models;
 mod report;
@@ -28,9 +29,9 @@ mod table7;
 #[cfg(test)]
 mod tests;
 
+pub use error::PaperError;
 pub use report::{Cell, Report};
 
-use crate::error::Error;
 use crate::run::RunSettings;
 use lab::Lab;
 use std::path::PathBuf;
@@ -116,7 +117,7 @@ impl Default for PaperSettings {
 /// # Errors
 /// A file that cannot be read, or what [`offset`](crate::offset::offset) fails with. An offset that
 /// is empty is a row that says so.
-pub fn measure(table: Table, settings: &PaperSettings, run: &RunSettings) -> Result<Report, Error> {
+pub fn measure(table: Table, settings: &PaperSettings, run: &RunSettings) -> Result<Report, PaperError> {
     let lab = Lab { settings, run };
     let mut report = match table {
         Table::Times => table1::measure(&lab),

@@ -4,7 +4,7 @@
 //! another plate of the kind. The others stand for their kind: a sharp machine part, a statue, a
 //! thing with many holes.
 
-use crate::error::Error;
+use super::PaperError;
 use crate::io;
 use crate::mesh::{Topology, TriMesh, clean, shapes};
 use crate::offset::SignMode;
@@ -93,7 +93,12 @@ impl Model {
     ///
     /// # Errors
     /// A file that cannot be read.
-    pub fn load(of: PaperModel, files: &[PathBuf], cuts: u32, run: &RunSettings) -> Result<Model, Error> {
+    pub fn load(
+        of: PaperModel,
+        files: &[PathBuf],
+        cuts: u32,
+        run: &RunSettings,
+    ) -> Result<Model, PaperError> {
         run.check()?;
         let stand_in = of.stand_in();
         let file = stand_in.files.iter().find_map(|name| {

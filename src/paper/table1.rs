@@ -1,9 +1,9 @@
 //! Table I: time by phase, per model and offset.
 
+use super::PaperError;
 use super::lab::{Lab, PUBLISHED_MACHINE};
 use super::models::PaperModel;
 use super::report::{Cell, Report};
-use crate::error::Error;
 
 /// A published row: offset, then T_s, T_d, T_c, T_tot in seconds; `None` where the table has no
 /// entry.
@@ -56,7 +56,7 @@ const PUBLISHED: [(PaperModel, &str, &[Row]); 6] = [
     (PaperModel::Rabbit, "134k", &[(-0.03, [Some(1.3), Some(5.6), Some(13.5), Some(20.4)])]),
 ];
 
-pub(super) fn measure(lab: &Lab) -> Result<Report, Error> {
+pub(super) fn measure(lab: &Lab) -> Result<Report, PaperError> {
     let mut report = Report::new(&[
         "paper's model",
         "F#",

@@ -1,9 +1,9 @@
 //! Table II: time over the resolution.
 
+use super::PaperError;
 use super::lab::{Lab, PUBLISHED_MACHINE};
 use super::models::PaperModel;
 use super::report::{Cell, Report};
-use crate::error::Error;
 use crate::offset::VoxelSize;
 
 /// The offset of the table, as a part of the diagonal.
@@ -17,7 +17,7 @@ const PUBLISHED: [(&str, u32, [f64; 4]); 2] =
 /// The grids' cells, as divisors of the full resolution.
 const DIVISORS: [u32; 4] = [8, 4, 2, 1];
 
-pub(super) fn measure(lab: &Lab) -> Result<Report, Error> {
+pub(super) fn measure(lab: &Lab) -> Result<Report, PaperError> {
     let mut report = Report::new(&[
         "paper's model",
         "F#",

@@ -1,9 +1,9 @@
 //! Table III: time over the offset distance.
 
+use super::PaperError;
 use super::lab::{Lab, PUBLISHED_MACHINE};
 use super::models::PaperModel;
 use super::report::{Cell, Report};
-use crate::error::Error;
 
 /// A published row: offset, T_tot in seconds.
 type Row = (f64, f64);
@@ -27,7 +27,7 @@ const PUBLISHED: [(PaperModel, &str, [Row; 6]); 3] = [
     ),
 ];
 
-pub(super) fn measure(lab: &Lab) -> Result<Report, Error> {
+pub(super) fn measure(lab: &Lab) -> Result<Report, PaperError> {
     let mut report = Report::new(&[
         "paper's model",
         "F#",

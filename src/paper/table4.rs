@@ -8,11 +8,11 @@
 //! IV.D has the octree filter test signed distances, but then SD could save little after it; the
 //! counts of BB + OT fit unsigned ones, and so it is done here without SD.
 
+use super::PaperError;
 use super::lab::Lab;
 use super::models::PaperModel;
 use super::report::{Cell, Report};
 use crate::band::{self, LeafBatch, count_queries};
-use crate::error::Error;
 use crate::filter::{BoxSide, FilterSettings, FilterStatistics, Switch};
 
 /// A published row, in thousands: offset; BB_8 to BB_64; the same with SD; BB + OT and BB + SD +
@@ -42,7 +42,7 @@ const SIDES: [u32; 4] = [6, 5, 4, 3];
 /// The box side with the octree filter: 128 cells.
 const OCTREE_SIDE: u32 = 7;
 
-pub(super) fn measure(lab: &Lab) -> Result<Report, Error> {
+pub(super) fn measure(lab: &Lab) -> Result<Report, PaperError> {
     let mut report = Report::new(&[
         "offset",
         "figures",
@@ -89,7 +89,7 @@ pub(super) fn measure(lab: &Lab) -> Result<Report, Error> {
             row.push(Cell::Count(last.distance_computations()));
             row.push(Cell::Count(last.distance_computations() - last.node_queries));
         }
-        let built = band::build(&distance, &settings, lab.run, |_: LeafBatch| Ok::<_, Error>(()))?;
+        let built = band::build(&distance, &settings, lab.run, |_: LeafBatch| Ok::<_, PaperError>(()))?;
         row.push(Cell::Count(built.valid_nodes));
         let cube = f64::from(lab.settings.resolution + 1).powi(3);
         row.push(Cell::Part(last.distance_computations() as f64 / cube));

@@ -1,11 +1,11 @@
 //! Table V: edges solved after S_d subdivisions, hybrid and bisection.
 
+use super::PaperError;
 use super::lab::Lab;
 use super::models::{Model, PaperModel};
 use super::report::{Cell, Report};
 use crate::distance::SignedDistance;
 use crate::edge::{EdgeSettings, EdgeStatistics, RootMethod, solve_by};
-use crate::error::Error;
 use crate::lattice::Slab;
 use std::time::Instant;
 
@@ -52,7 +52,7 @@ const LARGEST: f64 = 0.32;
 /// the tolerance.
 const PUBLISHED_TOLERANCE: f64 = 2.6e-4;
 
-pub(super) fn measure(lab: &Lab) -> Result<Report, Error> {
+pub(super) fn measure(lab: &Lab) -> Result<Report, PaperError> {
     let mut report = Report::new(&[
         "triangles",
         "offset",
@@ -112,7 +112,7 @@ fn here(
     distance: &SignedDistance,
     fraction: f64,
     cells: u32,
-) -> Result<Vec<Cell>, Error> {
+) -> Result<Vec<Cell>, PaperError> {
     let mut row = vec![
         Cell::text(model.mesh.triangles.len().to_string()),
         Cell::Number(fraction),
@@ -123,7 +123,7 @@ fn here(
         row.extend([const { Cell::Nothing }; 9]);
         return Ok(row);
     };
-    let solve = |method| -> Result<(EdgeStatistics, f64), Error> {
+    let solve = |method| -> Result<(EdgeStatistics, f64), PaperError> {
         let settings =
             EdgeSettings { lattice: field.settings.lattice, r: field.settings.r, method, slab: Slab::WHOLE };
         let numbers = field.numbers.clone();

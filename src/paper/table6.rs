@@ -1,12 +1,12 @@
 //! Table VI: convex/concave analysis against the polygon-edge intersection test of Ju and Udeshi
 //! (2006).
 
+use super::PaperError;
 use super::lab::Lab;
 use super::models::PaperModel;
 use super::report::{Cell, Report};
 use crate::contour::{ContourSettings, CutMethod, cut_times};
 use crate::edge::solve;
-use crate::error::Error;
 
 /// A published row: offset, triangles in thousands and seconds of the method in \[8\], the same of
 /// the analysis.
@@ -24,7 +24,7 @@ const PUBLISHED: [(PaperModel, &str, &[Row]); 4] = [
     ),
 ];
 
-pub(super) fn measure(lab: &Lab) -> Result<Report, Error> {
+pub(super) fn measure(lab: &Lab) -> Result<Report, PaperError> {
     let mut report = Report::new(&[
         "paper's model",
         "F#",

@@ -3,10 +3,10 @@
 //! The paper's errors are relative to the offset value: taken as parts of the diagonal, the
 //! dragon's maximum of 0.094 would be 48 voxels; relative to its offset of 0.02 it is about one.
 
+use super::PaperError;
 use super::lab::Lab;
 use super::models::{Model, PaperModel};
 use super::report::{Cell, Report};
-use crate::error::Error;
 use crate::offset::{Length, OffsetResult};
 use crate::verify::{DistanceReport, VerifySettings, distance_error};
 
@@ -27,7 +27,7 @@ const PUBLISHED: [(PaperModel, &str, &[Row]); 6] = [
     (PaperModel::Rabbit, "134k", &[(-0.03, 0.000096, 0.053)]),
 ];
 
-pub(super) fn measure(lab: &Lab) -> Result<Report, Error> {
+pub(super) fn measure(lab: &Lab) -> Result<Report, PaperError> {
     let mut report = Report::new(&[
         "paper's model",
         "F#",
@@ -70,7 +70,7 @@ pub(super) fn measure(lab: &Lab) -> Result<Report, Error> {
 }
 
 /// The errors of a result, as `verify` takes them.
-pub(super) fn errors(lab: &Lab, model: &Model, result: &OffsetResult) -> Result<DistanceReport, Error> {
+pub(super) fn errors(lab: &Lab, model: &Model, result: &OffsetResult) -> Result<DistanceReport, PaperError> {
     let settings = VerifySettings {
         distance: Length::Units(result.statistics.distance),
         // verify looks at no more than four times as many vertices and edge midpoints: with a

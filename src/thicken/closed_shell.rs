@@ -5,7 +5,7 @@ use super::{ThickenSettings, ThickenTimes};
 use crate::error::Error;
 use crate::mesh::TriMesh;
 use crate::mesh::measure::signed_volume;
-use crate::offset::{EngineTimes, Length, OffsetSettings, VoxelSize, offset};
+use crate::offset::{EngineTimes, Length, OffsetError, OffsetSettings, VoxelSize, offset};
 use crate::run::RunSettings;
 
 /// The patch, and its offset by the thickness with the opposite orientation (\[WC13\] Figure 13). A patch that is too small
@@ -40,8 +40,8 @@ pub(super) fn shell(
             times.faces += edges + contour;
             if is_around { made.mesh } else { reversed(made.mesh) }
         }
-        Err(Error::Empty(_)) if !is_around => TriMesh::default(),
-        Err(error) => return Err(error),
+        Err(OffsetError::Empty(_)) if !is_around => TriMesh::default(),
+        Err(error) => return Err(error.into()),
     };
     let mut mesh = patch.clone();
     let first = mesh.vertices.len() as u32;

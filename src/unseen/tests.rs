@@ -164,5 +164,5 @@ fn resolving_finds_what_no_node_is_in() {
     let result = offset(&mesh, &settings, &run).unwrap();
     assert!(result.statistics.halvings > 0 && !result.mesh.triangles.is_empty());
     let unresolved = OffsetSettings { resolve: 0, ..settings };
-    assert!(matches!(offset(&mesh, &unresolved, &run), Err(crate::error::Error::Empty(_))));
+    assert!(matches!(offset(&mesh, &unresolved, &run), Err(crate::offset::OffsetError::Empty(_))));
 }

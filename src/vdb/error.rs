@@ -1,5 +1,6 @@
 //! Why something failed with a grid or a `.vdb` file.
 
+use crate::io::MergeError;
 use crate::lattice::Ijk;
 use crate::run::Cancelled;
 use std::path::{Path, PathBuf};
@@ -9,23 +10,27 @@ use std::path::{Path, PathBuf};
 #[non_exhaustive]
 pub enum VdbError {
     /// The run was cancelled.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
+    #[error("cancelled")]
+    Cancelled,
     /// A file could not be read: it is missing, not readable, or ends too early.
     #[error("cannot read {}: {reason}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system or OpenVDB says.
+        /// The words of the system or of OpenVDB.
         reason: String,
+        /// The system's error; `None` where OpenVDB failed.
+        source: Option<std::io::Error>,
     },
     /// A file could not be written: no such directory, no permission, no space.
     #[error("cannot write {}: {reason}", path.display())]
     Write {
         /// The file.
         path: PathBuf,
-        /// What the system or OpenVDB says.
+        /// The words of the system or of OpenVDB.
         reason: String,
+        /// The system's error; `None` where OpenVDB failed.
+        source: Option<std::io::Error>,
     },
     /// A file does not begin like a `.vdb` file.
     #[error("{} is not an OpenVDB file", path.display())]
@@ -95,18 +100,39 @@ pub enum VdbError {
         /// The number of leaves.
         leaves: usize,
     },
+    /// Tiles of a band do not belong together.
+    #[error(transparent)]
+    Merge(#[from] MergeError),
     /// OpenVDB failed in memory.
     #[error("OpenVDB failed: {0}")]
     OpenVdb(String),
 }
 
 impl VdbError {
+    /// OpenVDB, or the content of a file, kept it from being read.
     pub(super) fn read(path: &Path, reason: impl ToString) -> Self {
-        VdbError::Read { path: path.into(), reason: sentence(reason) }
+        VdbError::Read { path: path.into(), reason: sentence(reason), source: None }
     }
 
+    /// The system kept a file from being read.
+    pub(super) fn read_by_system(path: &Path, error: std::io::Error) -> Self {
+        VdbError::Read { path: path.into(), reason: sentence(&error), source: Some(error) }
+    }
+
+    /// OpenVDB could not write a file.
     pub(super) fn write(path: &Path, reason: impl ToString) -> Self {
-        VdbError::Write { path: path.into(), reason: sentence(reason) }
+        VdbError::Write { path: path.into(), reason: sentence(reason), source: None }
+    }
+
+    /// The system kept a file from being written.
+    pub(super) fn write_by_system(path: &Path, error: std::io::Error) -> Self {
+        VdbError::Write { path: path.into(), reason: sentence(&error), source: Some(error) }
+    }
+}
+
+impl From<Cancelled> for VdbError {
+    fn from(Cancelled: Cancelled) -> Self {
+        VdbError::Cancelled
     }
 }
 

@@ -109,7 +109,7 @@ pub(super) fn write_grids(
         Compression::None => ffi::Codec::None,
     };
     ffi::write_file(bytes(path), surface, closest, codec, metadata).map_err(|e| VdbError::write(path, e))?;
-    content_id::stamp(path).map_err(|e| VdbError::write(path, e))
+    content_id::stamp(path).map_err(|e| VdbError::write_by_system(path, e))
 }
 
 /// Opens the level set `name` of a file; without a name the grid `surface`, or else the only float grid.
@@ -190,11 +190,11 @@ pub(super) fn contents(path: &Path, depth: ffi::Depth) -> Result<ffi::Contents, 
     let mut first = Vec::new();
     File::open(path)
         .and_then(|file| file.take(MAGIC.len() as u64).read_to_end(&mut first))
-        .map_err(|e| VdbError::read(path, e))?;
+        .map_err(|e| VdbError::read_by_system(path, e))?;
     if first != MAGIC {
         return Err(VdbError::NotVdb { path: path.into() });
     }
-    if !content_id::is_intact(path).map_err(|e| VdbError::read(path, e))? {
+    if !content_id::is_intact(path).map_err(|e| VdbError::read_by_system(path, e))? {
         return Err(VdbError::read(path, "the file is damaged or incomplete"));
     }
     ffi::read_contents(bytes(path), depth).map_err(|e| VdbError::read(path, e))

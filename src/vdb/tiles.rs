@@ -7,8 +7,7 @@ use super::bridge::ffi;
 use super::error::VdbError;
 use super::file::{self, Compression, MetaValue, VdbOptions};
 use super::grid::{Band, ClosestGrid, SurfaceGrid};
-use crate::error::Error;
-use crate::io::tile::{MergeError, MergeProblem, Tile, check_complete};
+use crate::io::tile::{MergeError, MergeErrorKind, Tile, check_complete};
 use std::path::{Path, PathBuf};
 
 /// Name of the metadata entry that makes a file a tile.
@@ -38,7 +37,7 @@ struct TileFile {
 }
 
 impl TileFile {
-    fn open(path: &Path) -> Result<TileFile, Error> {
+    fn open(path: &Path) -> Result<TileFile, VdbError> {
         let mut metadata = file::contents(path, ffi::Depth::Names)?.metadata;
         let place = metadata.iter().position(|item| item.name == ENTRY);
         let found = place.and_then(|n| {
@@ -50,7 +49,7 @@ impl TileFile {
         let path = path.to_path_buf();
         match found {
             Some((tile, compression)) => Ok(TileFile { path, tile, compression, metadata }),
-            None => Err(MergeError { path, problem: MergeProblem::NotATile }.into()),
+            None => Err(MergeError { path, kind: MergeErrorKind::NotATile }.into()),
         }
     }
 
@@ -67,14 +66,14 @@ impl TileFile {
 ///
 /// # Errors
 /// When a file is no tile, is of another work, is there twice or not at all, or when reading or writing fails.
-pub fn merge_bands(tiles: &[PathBuf], output: &Path) -> Result<Band, Error> {
+pub fn merge_bands(tiles: &[PathBuf], output: &Path) -> Result<Band, VdbError> {
     let mut tiles: Vec<TileFile> = tiles.iter().map(|path| TileFile::open(path)).collect::<Result<_, _>>()?;
     tiles.sort_by_key(|tile| tile.tile.number);
     check_complete(&tiles.iter().map(|t| (t.path.as_path(), t.tile)).collect::<Vec<_>>())?;
     let (first, others) = tiles.split_first().expect("complete tiles are not none");
     let mut whole = file::open_band(&first.path)?;
     for other in others {
-        let fault = || MergeError { path: other.path.clone(), problem: MergeProblem::OtherJob };
+        let fault = || MergeError { path: other.path.clone(), kind: MergeErrorKind::OtherJob };
         let part = file::open_band(&other.path)?;
         let same = part.surface.background() == whole.surface.background()
             && part.surface.lattice() == whole.surface.lattice()
@@ -85,7 +84,7 @@ pub fn merge_bands(tiles: &[PathBuf], output: &Path) -> Result<Band, Error> {
         whole.append(&part)?;
     }
     if whole.surface.leaf_count() == 0 {
-        return Err(MergeError { path: output.to_path_buf(), problem: MergeProblem::Empty }.into());
+        return Err(MergeError { path: output.to_path_buf(), kind: MergeErrorKind::Empty }.into());
     }
     whole.surface.prune();
     let Band { surface, closest } = &whole;

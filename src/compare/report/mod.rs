@@ -17,10 +17,10 @@ pub use raster::{Camera, Frame, Hit, raster};
 pub use shade::{RAMP_ENDS, Truth, Wires, ramp, shaded};
 pub use spots::{Kind, Spot, spots};
 
+use super::CompareError;
 use super::table::{Column, rows};
 use super::{Comparison, MethodResult};
 use crate::distance::SignedDistance;
-use crate::error::Error;
 use crate::mesh::{Topology, TriMesh};
 use crate::run::RunSettings;
 use glam::DVec3;
@@ -38,13 +38,13 @@ const CLOSE: f64 = 14.0;
 /// The page for `comparison` of offsets of `mesh`; `title` is the name of the input.
 ///
 /// # Errors
-/// [`Error::Cancelled`]; [`Error::Compare`] when a picture cannot be encoded.
+/// [`CompareError::Cancelled`]; [`CompareError::Picture`] when a picture cannot be encoded.
 pub fn page(
     comparison: &Comparison,
     mesh: &TriMesh,
     title: &str,
     run: &RunSettings,
-) -> Result<String, Error> {
+) -> Result<String, CompareError> {
     let topology = run.install(|| Topology::new(mesh));
     let distance = run.install(|| SignedDistance::new(mesh, &topology));
     let spots = spots(comparison, &distance, run);
@@ -171,9 +171,9 @@ fn renderings(
     distance: &SignedDistance,
     spots: &[Spot],
     run: &RunSettings,
-) -> Result<String, Error> {
+) -> Result<String, CompareError> {
     let truth = Truth { distance, r: comparison.distance, voxel: comparison.voxel };
-    let drawn = |camera: &Camera, wires: Wires| -> Result<String, Error> {
+    let drawn = |camera: &Camera, wires: Wires| -> Result<String, CompareError> {
         let mut panels = String::new();
         for (result, mesh) in with_mesh(comparison) {
             run.check()?;

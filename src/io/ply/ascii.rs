@@ -8,13 +8,18 @@ use std::io::BufRead;
 use ply_rs_bw::ply::PropertyType;
 
 use super::super::Format;
-use super::super::error::{Fault, Problem};
+use super::super::error::{LoadErrorKind, ReadError};
 use super::super::text::{Text, is_not_finite, parse};
 use super::header::{COORDINATES, Header, WANTED};
 use super::{Body, CORNER_LISTS, Role, Vertex};
 
 /// Reads the body, which is `rest` bytes long.
-pub(super) fn read<R: BufRead>(reader: R, header: &Header, rest: u64, body: &mut Body) -> Result<(), Fault> {
+pub(super) fn read<R: BufRead>(
+    reader: R,
+    header: &Header,
+    rest: u64,
+    body: &mut Body,
+) -> Result<(), ReadError> {
     let mut text = Text::new(reader, Format::Ply, header.lines);
     let mut numbers = Vec::new();
     let mut corners = Vec::new();
@@ -32,7 +37,7 @@ pub(super) fn read<R: BufRead>(reader: R, header: &Header, rest: u64, body: &mut
                     PropertyType::Scalar(_) => read_scalar(&mut text, *role, name, &mut vertex),
                     PropertyType::List(..) => read_list(&mut text, *role, name, &mut numbers),
                 };
-                done.map_err(|fault| say_which(fault, &element.name, i, element.count))?;
+                done.map_err(|error| say_which(error, &element.name, i, element.count))?;
             }
             text.skip_rest_of_line();
             let done = match role {
@@ -43,12 +48,12 @@ pub(super) fn read<R: BufRead>(reader: R, header: &Header, rest: u64, body: &mut
                 Role::Face | Role::Strips => body.push_corners(*role, &numbers, &mut corners),
                 Role::Other => Ok(()),
             };
-            done.map_err(|problem| text.fault(problem))?;
+            done.map_err(|kind| text.error(kind))?;
         }
     }
     body.non_finite = text.take_non_finite();
     if header.skipped.is_some() && text.word()?.is_some() {
-        return Err(text.fault(Problem::truncated("the end of the body")));
+        return Err(text.error(LoadErrorKind::truncated("the end of the body")));
     }
     Ok(())
 }
@@ -58,7 +63,7 @@ fn read_scalar<R: BufRead>(
     role: Role,
     name: &str,
     vertex: &mut Vertex,
-) -> Result<(), Fault> {
+) -> Result<(), ReadError> {
     let is_vertex = role == Role::Vertex;
     if let Some(axis) = COORDINATES.iter().position(|axis| *axis == name && is_vertex) {
         vertex.position[axis] = text.coordinate("a coordinate")?;
@@ -70,7 +75,7 @@ fn read_scalar<R: BufRead>(
         vertex.wanted = match parse(bytes) {
             Some(x) => x,
             None if is_not_finite(bytes) => f64::NAN,
-            None => return Err(text.fault(Problem::syntax(bytes, "a number"))),
+            None => return Err(text.error(LoadErrorKind::syntax(bytes, "a number"))),
         };
     }
     Ok(())
@@ -81,7 +86,7 @@ fn read_list<R: BufRead>(
     role: Role,
     name: &str,
     numbers: &mut Vec<i64>,
-) -> Result<(), Fault> {
+) -> Result<(), ReadError> {
     let wanted = matches!(role, Role::Face | Role::Strips) && CORNER_LISTS.contains(&name);
     for _ in 0..text.count("the length of a list")? {
         match wanted {
@@ -95,9 +100,9 @@ fn read_list<R: BufRead>(
 }
 
 /// Says at which element a file was cut off.
-fn say_which(mut fault: Fault, name: &str, i: u64, count: usize) -> Fault {
-    if let Problem::Truncated { missing } = &mut fault.problem {
+fn say_which(mut error: ReadError, name: &str, i: u64, count: usize) -> ReadError {
+    if let LoadErrorKind::Truncated { missing } = &mut error.kind {
         *missing = format!("{missing} of {name} {i} (the header promises {count})");
     }
-    fault
+    error
 }

@@ -7,7 +7,7 @@ use ply_rs_bw::ply::{
     BeginList, ElementDef, Encoding, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
-use super::super::error::{Fault, Place, Problem};
+use super::super::error::{LoadErrorKind, Location, ReadError};
 use super::super::loaded::NonFinite;
 use super::header::{Header, WANTED};
 use super::skip::Skipped;
@@ -19,7 +19,7 @@ pub(super) fn read<R: Read + Seek>(
     header: &Header,
     rest: u64,
     body: &mut Body,
-) -> Result<(), Fault> {
+) -> Result<(), ReadError> {
     let mut corners = Vec::new();
     for (role, element) in &header.elements {
         // An element without properties takes no bytes, and its count may be anything.
@@ -37,26 +37,27 @@ pub(super) fn read<R: Read + Seek>(
                     read_one::<_, Skipped>(&mut reader, header.encoding, element).map(|_| Ok(None))
                 }
             };
-            let mut place = || -> std::io::Result<Place> {
+            let mut location = || -> std::io::Result<Location> {
                 let byte = reader.stream_position()?;
-                Ok(Place::Element { name: element.name.clone(), number: i, byte })
+                Ok(Location::Element { name: element.name.clone(), number: i, byte })
             };
-            let problem = match done {
+            let kind = match done {
                 Ok(Ok(None)) => continue,
                 Ok(Ok(Some(x))) => {
                     if body.non_finite.is_none() {
-                        body.non_finite = Some(NonFinite { place: place()?, coordinate: x.to_string() });
+                        body.non_finite =
+                            Some(NonFinite { location: location()?, coordinate: x.to_string() });
                     }
                     continue;
                 }
-                Ok(Err(problem)) => problem,
+                Ok(Err(kind)) => kind,
                 Err(error) => explain(&error, element),
             };
-            return Err(Fault { place: place()?, problem });
+            return Err(ReadError { location: location()?, kind });
         }
     }
     if header.skipped.is_some() && !reader.fill_buf()?.is_empty() {
-        return Err(Problem::truncated("the end of the body").into());
+        return Err(LoadErrorKind::truncated("the end of the body").into());
     }
     Ok(())
 }
@@ -72,19 +73,19 @@ fn read_one<R: Read, E: PropertyAccess>(
     }
 }
 
-fn explain(error: &ParseError, element: &ElementDef) -> Problem {
+fn explain(error: &ParseError, element: &ElementDef) -> LoadErrorKind {
     match error.kind() {
         ErrorKind::UnexpectedEof => {
             let ElementDef { name, count, .. } = element;
-            Problem::truncated(format!("the end of this {name} (the header promises {count})"))
+            LoadErrorKind::truncated(format!("the end of this {name} (the header promises {count})"))
         }
         ErrorKind::InvalidInput | ErrorKind::InvalidData => {
             let text = error.to_string();
             let first = text.lines().next().unwrap_or_default();
             let expected = format!("a valid {} ({first})", element.name);
-            Problem::Syntax { found: "something else".into(), expected }
+            LoadErrorKind::Syntax { found: "something else".into(), expected }
         }
-        kind => Problem::Read(kind.into()),
+        kind => LoadErrorKind::Read(kind.into()),
     }
 }
 

@@ -15,7 +15,7 @@ use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Encoding, PropertyType};
 
 use super::super::Format;
-use super::super::error::{Fault, Place, Problem, quote};
+use super::super::error::{LoadErrorKind, Location, ReadError, quote};
 use super::super::loaded::Passed;
 use super::super::text::{BYTE_ORDER_MARK, Ended, read_line};
 use super::skip::Skipped;
@@ -56,15 +56,15 @@ pub(super) struct SkippedLines {
 
 impl SkippedLines {
     /// What to tell the user.
-    pub(super) fn passed(self) -> (Place, Passed) {
+    pub(super) fn passed(self) -> (Location, Passed) {
         let SkippedLines { line, first, count } = self;
-        (Place::Line(line), Passed::HeaderLines { first, lines: count })
+        (Location::Line(line), Passed::HeaderLines { first, lines: count })
     }
 
     /// What is wrong where they should not have been skipped.
-    pub(super) fn fault(self) -> Fault {
+    pub(super) fn error(self) -> ReadError {
         let expected = EXPECTED.into();
-        Problem::Syntax { found: self.first, expected }.on_line(self.line)
+        LoadErrorKind::Syntax { found: self.first, expected }.on_line(self.line)
     }
 }
 
@@ -73,7 +73,7 @@ const EXPECTED: &str = "a PLY header line (format, element, property)";
 
 /// Reads the header; `reader` then stands on the first byte of the body. The scalar property `wanted` of the
 /// vertices is named [`WANTED`] in it.
-pub(super) fn read<R: BufRead>(reader: &mut R, wanted: Option<&str>) -> Result<Header, Fault> {
+pub(super) fn read<R: BufRead>(reader: &mut R, wanted: Option<&str>) -> Result<Header, ReadError> {
     let mut kept = Kept { wanted: wanted.map(|name| name.as_bytes().to_vec()), ..Kept::default() };
     let (mut bytes, mut lines) = (0u64, 0u64);
     if reader.fill_buf()?.starts_with(BYTE_ORDER_MARK) {
@@ -102,10 +102,10 @@ pub(super) fn read<R: BufRead>(reader: &mut R, wanted: Option<&str>) -> Result<H
         let words = line.trim_ascii();
         if lines == 1 && words != b"ply" {
             let reason = format!("it begins with {}", quote(words));
-            return Err(Problem::WrongFormat { format: Format::Ply, reason }.on_line(1));
+            return Err(LoadErrorKind::WrongFormat { format: Format::Ply, reason }.on_line(1));
         }
         if read == 0 {
-            return Err(Problem::truncated("\"end_header\"").on_line(lines));
+            return Err(LoadErrorKind::truncated("\"end_header\"").on_line(lines));
         }
         kept.push(words, lines)?;
         // The body begins behind the line end, which a file that was cut off does not have.
@@ -118,14 +118,14 @@ pub(super) fn read<R: BufRead>(reader: &mut R, wanted: Option<&str>) -> Result<H
         .map_err(|error| kept.explain(&error))?;
     let elements: Vec<_> =
         header.elements.into_iter().map(|(_, element)| (role(&element.name), element)).collect();
-    let last_line = |problem: Problem| problem.on_line(lines);
+    let last_line = |kind: LoadErrorKind| kind.on_line(lines);
     for (role, element) in &elements {
         check(*role, element).map_err(last_line)?;
     }
     let vertices = elements.iter().find(|(role, _)| *role == Role::Vertex);
     let vertex_count = vertices.map_or(0, |(_, element)| element.count as u64);
     if u32::try_from(vertex_count).is_err() {
-        return Err(last_line(Problem::TooManyVertices));
+        return Err(last_line(LoadErrorKind::TooManyVertices));
     }
     let skipped = kept.skipped;
     Ok(Header { encoding: header.encoding, elements, vertex_count, bytes, lines, skipped })
@@ -147,7 +147,7 @@ struct Kept {
 }
 
 impl Kept {
-    fn push(&mut self, line: &[u8], number: u64) -> Result<(), Fault> {
+    fn push(&mut self, line: &[u8], number: u64) -> Result<(), ReadError> {
         let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
         let keyword = words.next().unwrap_or_default();
         let is_new = match keyword {
@@ -172,7 +172,7 @@ impl Kept {
                 self.properties.insert(name.to_vec())
             }
             b"ply" | b"format" | b"end_header" => true,
-            _ if may_define(line) => return Err(Problem::syntax(line, EXPECTED).on_line(number)),
+            _ if may_define(line) => return Err(LoadErrorKind::syntax(line, EXPECTED).on_line(number)),
             _ => {
                 let new = || SkippedLines { line: number, first: quote(line), count: 0 };
                 self.skipped.get_or_insert_with(new).count += 1;
@@ -180,15 +180,15 @@ impl Kept {
             }
         };
         if !is_new {
-            return Err(Problem::syntax(line, "a name that was not used before").on_line(number));
+            return Err(LoadErrorKind::syntax(line, "a name that was not used before").on_line(number));
         }
         self.keep(line, line, number)
     }
 
     /// Keeps `text` in place of `line`.
-    fn keep(&mut self, line: &[u8], text: &[u8], number: u64) -> Result<(), Fault> {
+    fn keep(&mut self, line: &[u8], text: &[u8], number: u64) -> Result<(), ReadError> {
         let text = std::str::from_utf8(text);
-        let text = text.map_err(|_| Problem::syntax(line, "a header line").on_line(number))?;
+        let text = text.map_err(|_| LoadErrorKind::syntax(line, "a header line").on_line(number))?;
         self.text.push_str(text);
         self.text.push('\n');
         self.lines.push((number, line.to_vec()));
@@ -196,11 +196,11 @@ impl Kept {
     }
 
     /// The line that `ply-rs-bw` does not understand.
-    fn explain(&self, error: &ply_rs_bw::parser::ParseError) -> Fault {
+    fn explain(&self, error: &ply_rs_bw::parser::ParseError) -> ReadError {
         let line = error.line().and_then(|line| self.lines.get(line.checked_sub(1)?));
         match line {
-            Some((number, line)) => Problem::syntax(line, EXPECTED).on_line(*number),
-            None => Problem::syntax(b"end_header", "a line \"format ascii 1.0\" or a binary format")
+            Some((number, line)) => LoadErrorKind::syntax(line, EXPECTED).on_line(*number),
+            None => LoadErrorKind::syntax(b"end_header", "a line \"format ascii 1.0\" or a binary format")
                 .on_line(self.lines.last().map_or(1, |(number, _)| *number)),
         }
     }
@@ -229,8 +229,8 @@ fn role(name: &str) -> Role {
 }
 
 /// Whether the element has what its role needs.
-fn check(role: Role, element: &ElementDef) -> Result<(), Problem> {
-    let unsupported = |what: String| Problem::Unsupported { what, remedy: "export the mesh again" };
+fn check(role: Role, element: &ElementDef) -> Result<(), LoadErrorKind> {
+    let unsupported = |what: String| LoadErrorKind::Unsupported { what, remedy: "export the mesh again" };
     let is_scalar = |name: &str| {
         matches!(element.properties.get(name).map(|p| &p.data_type), Some(PropertyType::Scalar(_)))
     };

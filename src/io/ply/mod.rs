@@ -15,7 +15,7 @@ use std::io::{BufReader, Read, Seek, Write};
 use ply_rs_bw::ply::{Encoding, PropertyType};
 
 use super::Coordinates;
-use super::error::{Fault, Problem, quote};
+use super::error::{LoadErrorKind, ReadError, quote};
 use super::loaded::{Content, NonFinite};
 use super::polygon::PolygonMesh;
 use crate::mesh::TriMesh;
@@ -25,7 +25,7 @@ use header::{COORDINATES, Header, WANTED};
 ///
 /// Lines of the header are skipped only where the body is exactly what the others say: then none of them was
 /// needed.
-pub(super) fn read<R: Read + Seek>(source: R, length: u64) -> Result<Content, Fault> {
+pub(super) fn read<R: Read + Seek>(source: R, length: u64) -> Result<Content, ReadError> {
     let mut reader = BufReader::with_capacity(1 << 16, source);
     let header = header::read(&mut reader, None)?;
     let Body { mesh, non_finite, .. } = read_body(reader, &header, length, Wanted::Mesh)?;
@@ -38,7 +38,7 @@ pub(super) fn vertex_property<R: Read + Seek>(
     source: R,
     length: u64,
     name: &str,
-) -> Result<Option<Vec<f64>>, Fault> {
+) -> Result<Option<Vec<f64>>, ReadError> {
     let mut reader = BufReader::with_capacity(1 << 16, source);
     let header = header::read(&mut reader, Some(name))?;
     let axis = COORDINATES.iter().position(|axis| *axis == name);
@@ -58,7 +58,7 @@ fn read_body<R: Read + Seek>(
     header: &Header,
     length: u64,
     wanted: Wanted,
-) -> Result<Body, Fault> {
+) -> Result<Body, ReadError> {
     let (mesh, vertex_count) = (PolygonMesh::default(), header.vertex_count);
     let mut body = Body { mesh, vertex_count, non_finite: None, wanted, values: Vec::new() };
     let rest = length.saturating_sub(header.bytes);
@@ -70,10 +70,10 @@ fn read_body<R: Read + Seek>(
     };
     match (done, &header.skipped) {
         (Ok(()), _) => Ok(body),
-        (Err(fault), Some(skipped)) if !matches!(fault.problem, Problem::Read(_)) => {
-            Err(skipped.clone().fault())
+        (Err(error), Some(skipped)) if !matches!(error.kind, LoadErrorKind::Read(_)) => {
+            Err(skipped.clone().error())
         }
-        (Err(fault), _) => Err(fault),
+        (Err(error), _) => Err(error),
     }
 }
 
@@ -151,7 +151,12 @@ impl Body {
     }
 
     /// Appends a face or a list of strips. `corners` is changed.
-    fn push_corners(&mut self, role: Role, numbers: &[i64], corners: &mut Vec<u32>) -> Result<(), Problem> {
+    fn push_corners(
+        &mut self,
+        role: Role,
+        numbers: &[i64],
+        corners: &mut Vec<u32>,
+    ) -> Result<(), LoadErrorKind> {
         corners.clear();
         for &number in numbers {
             match u32::try_from(number) {
@@ -163,7 +168,7 @@ impl Body {
                 _ => {
                     let found = quote(number.to_string().as_bytes());
                     let last = self.vertex_count as i64 - 1;
-                    return Err(Problem::VertexNumber { found, first: 0, last });
+                    return Err(LoadErrorKind::VertexNumber { found, first: 0, last });
                 }
             }
         }

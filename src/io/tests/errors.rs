@@ -287,7 +287,7 @@ fn meshes_that_a_file_cannot_hold() {
         let path = directory.path().join(name);
         let error = save(mesh, &path, &SaveOptions { coordinates }).unwrap_err();
         assert!(!path.exists());
-        error.problem.to_string()
+        error.kind.to_string()
     };
     let mut mesh = tetrahedron();
     assert!(said(&mesh, "a.txt", Coordinates::F32).starts_with("the extension \"txt\" is not known"));

@@ -15,8 +15,8 @@ use super::*;
 fn load_bytes(format: Format, bytes: &[u8]) -> Result<Loaded, String> {
     let path = PathBuf::from(format!("model.{}", format.extension()));
     let loaded = read(Cursor::new(bytes), format).and_then(|content| content.finish(&path));
-    loaded.map_err(|Fault { place, problem }| {
-        LoadError { path, format: Some(format), place, problem }.to_string()
+    loaded.map_err(|ReadError { location, kind }| {
+        LoadError { path, format: Some(format), location, kind }.to_string()
     })
 }
 
