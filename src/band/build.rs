@@ -299,9 +299,9 @@ impl<P: LeafPolicy> Worker<'_, P> {
         for (origin, triangle, distance) in kept {
             let mut of_leaf = FilterStatistics::default();
             if self.filter.settings.candidates == Switch::On {
-                self.leaf_by_lists(origin, triangle, distance, narrowing, batch, &mut of_leaf);
+                self.leaf_from_candidates(origin, triangle, distance, narrowing, batch, &mut of_leaf);
             } else {
-                self.leaf_by_queries(origin, triangle, batch, &mut of_leaf);
+                self.leaf_from_hierarchy(origin, triangle, batch, &mut of_leaf);
             }
             if self.settings.slab.owns(origin) {
                 statistics += of_leaf;

@@ -7,7 +7,7 @@ use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, LeafMask, Z_LAST};
 
 /// What became of a leaf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Fate {
+pub(super) enum LeafOutcome {
     /// It is in the batch.
     Kept,
     /// No node of it is in the band.
@@ -50,7 +50,7 @@ impl Leaf {
     }
 
     /// Appends the leaf at `origin` to `batch`, unless no node of it is active.
-    pub(super) fn finish(&self, origin: Ijk, batch: &mut LeafBatch) -> Fate {
+    pub(super) fn finish(&self, origin: Ijk, batch: &mut LeafBatch) -> LeafOutcome {
         let inside = inside_mask(&self.values);
         let is_uniform = inside == [0; 8] || inside == [!0; 8];
         if !is_uniform || self.active.iter().any(|&word| word != 0) {
@@ -59,26 +59,26 @@ impl Leaf {
             batch.active.push(self.active);
             batch.inside.push(inside);
             batch.closest.extend_from_slice(&self.closest);
-            return Fate::Kept;
+            return LeafOutcome::Kept;
         }
         if self.values[0] < 0.0 {
             // Without active nodes there is no sign change, unless the input is not closed.
             batch.inside_blocks.push((origin, LEAF_DIM));
         }
-        Fate::Dropped
+        LeafOutcome::Dropped
     }
 
     /// The same without values. Nodes with negative ones are those that are known to be inside.
-    pub(super) fn finish_unsigned(&self, origin: Ijk, batch: &mut LeafBatch) -> Fate {
+    pub(super) fn finish_unsigned(&self, origin: Ijk, batch: &mut LeafBatch) -> LeafOutcome {
         let inside = inside_mask(&self.values);
         if self.active == [0; 8] && inside == [0; 8] {
-            return Fate::Dropped;
+            return LeafOutcome::Dropped;
         }
         batch.origins.push(origin);
         batch.active.push(self.active);
         batch.inside.push(inside);
         batch.closest.extend_from_slice(&self.closest);
-        Fate::Kept
+        LeafOutcome::Kept
     }
 }
 

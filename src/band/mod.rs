@@ -1,8 +1,8 @@
 //! The narrow band around the offset surface (\[LW11\] section IV).
 
 mod build;
-mod by_lists;
-mod by_queries;
+mod leaf_from_candidates;
+mod leaf_from_hierarchy;
 mod count;
 mod inside;
 mod jumps;

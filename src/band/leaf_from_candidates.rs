@@ -2,7 +2,7 @@
 
 use super::LeafBatch;
 use super::build::Worker;
-use super::leaf::{Fate, Leaf, blocks_with_crossed_cells};
+use super::leaf::{Leaf, LeafOutcome, blocks_with_crossed_cells};
 use super::policy::{BlockCandidates, BlockState, LeafPolicy};
 use crate::candidates::{BlockLists, EightPoints, Narrowing};
 use crate::filter::{Block, FilterStatistics};
@@ -28,7 +28,7 @@ struct Work<'a> {
 impl<P: LeafPolicy> Worker<'_, P> {
     /// Evaluates the leaf at `origin`, whose centre is at the signed distance `distance` with the closest triangle
     /// `triangle`, and appends it with the lists of its blocks.
-    pub(super) fn leaf_by_lists(
+    pub(super) fn leaf_from_candidates(
         &self,
         origin: Ijk,
         triangle: u32,
@@ -43,7 +43,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
         // A policy without signs decides by lists.
         let most = if P::IS_SIGNED { MOST } else { usize::MAX };
         if !narrowing.start(ssvh, self.filter.lattice, block, q, most) {
-            self.leaf_by_queries(origin, triangle, batch, statistics);
+            self.leaf_from_hierarchy(origin, triangle, batch, statistics);
             return;
         }
         statistics.lists[0] += narrowing.count(0) as u64;
@@ -61,13 +61,13 @@ impl<P: LeafPolicy> Worker<'_, P> {
         let side = if P::IS_SIGNED { self.side_around(block, distance) } else { Some(1.0) };
         self.halves(0, block, side, &mut work);
         let leaf = work.leaf;
-        let fate =
+        let outcome =
             if P::IS_SIGNED { leaf.finish(origin, batch) } else { leaf.finish_unsigned(origin, batch) };
-        match fate {
-            Fate::Dropped => batch.lists.drop_leaf(),
+        match outcome {
+            LeafOutcome::Dropped => batch.lists.drop_leaf(),
             // Without signs nobody knows which cells the surface crosses.
-            Fate::Kept if !P::IS_SIGNED => {}
-            Fate::Kept => {
+            LeafOutcome::Kept if !P::IS_SIGNED => {}
+            LeafOutcome::Kept => {
                 if let (Some(inside), Some(active)) = (batch.inside.last(), batch.active.last()) {
                     batch.lists.retain_blocks(blocks_with_crossed_cells(inside, active));
                 }

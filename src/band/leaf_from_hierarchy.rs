@@ -3,7 +3,7 @@
 
 use super::LeafBatch;
 use super::build::Worker;
-use super::leaf::{Fate, Leaf};
+use super::leaf::{Leaf, LeafOutcome};
 use super::policy::LeafPolicy;
 use crate::filter::{Block, FilterStatistics, Verdict};
 use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE};
@@ -11,7 +11,7 @@ use glam::DVec3;
 
 impl<P: LeafPolicy> Worker<'_, P> {
     /// Evaluates the leaf at `origin` through the octree filter and appends it.
-    pub(super) fn leaf_by_queries(
+    pub(super) fn leaf_from_hierarchy(
         &self,
         origin: Ijk,
         triangle: u32,
@@ -56,7 +56,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
 
     /// Appends a leaf whose blocks have no lists.
     fn finish_without_lists(&self, leaf: &Leaf, origin: Ijk, batch: &mut LeafBatch) {
-        if leaf.finish(origin, batch) == Fate::Kept {
+        if leaf.finish(origin, batch) == LeafOutcome::Kept {
             batch.lists.begin_leaf();
         }
     }
