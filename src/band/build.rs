@@ -3,7 +3,7 @@
 use super::LeafBatch;
 use super::leaf::Leaf;
 use super::policy::{LeafPolicy, SignedBand};
-use crate::candidates::Narrowing;
+use crate::candidates::CandidatePruner;
 use crate::distance::SignedDistance;
 use crate::filter::{Block, BoxSide, Filter, FilterSettings, FilterStatistics, Switch, Verdict};
 use crate::geom::aabb::Aabb;
@@ -226,7 +226,7 @@ pub(super) struct Worker<'a, P> {
 /// The working memory of a thread: what was used for one box is used for the next.
 #[derive(Default)]
 struct Scratch {
-    narrowing: Narrowing,
+    pruner: CandidatePruner,
     batch: LeafBatch,
 }
 
@@ -244,9 +244,9 @@ impl<P: LeafPolicy> Worker<'_, P> {
             phase.advance(1)?;
             let idle = pool().pop();
             let mut own: Scratch = idle.unwrap_or_default();
-            let Scratch { narrowing, batch } = &mut own;
+            let Scratch { pruner, batch } = &mut own;
             batch.clear();
-            let counts = self.bounding_box(block, narrowing, batch);
+            let counts = self.bounding_box(block, pruner, batch);
             let is_kept = !batch.is_empty() || !batch.inside_blocks.is_empty();
             let kept = is_kept.then(|| keep(batch));
             pool().push(own);
@@ -263,7 +263,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
     fn bounding_box(
         &self,
         block: Block,
-        narrowing: &mut Narrowing,
+        pruner: &mut CandidatePruner,
         batch: &mut LeafBatch,
     ) -> FilterStatistics {
         let mut statistics = FilterStatistics::default();
@@ -299,7 +299,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
         for (origin, triangle, distance) in kept {
             let mut of_leaf = FilterStatistics::default();
             if self.filter.settings.candidates == Switch::On {
-                self.leaf_from_candidates(origin, triangle, distance, narrowing, batch, &mut of_leaf);
+                self.leaf_from_candidates(origin, triangle, distance, pruner, batch, &mut of_leaf);
             } else {
                 self.leaf_from_hierarchy(origin, triangle, batch, &mut of_leaf);
             }

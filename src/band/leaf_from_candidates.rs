@@ -4,7 +4,7 @@ use super::LeafBatch;
 use super::build::Worker;
 use super::leaf::{Leaf, LeafOutcome, blocks_with_crossed_cells};
 use super::policy::{BlockCandidates, BlockState, LeafPolicy};
-use crate::candidates::{BlockLists, EightPoints, Narrowing};
+use crate::candidates::{BlockLists, CandidatePruner, EightPoints};
 use crate::filter::{Block, FilterStatistics};
 use crate::lattice::{Ijk, LEAF_DIM};
 use glam::DVec3;
@@ -19,7 +19,7 @@ const MOST: usize = 1500;
 
 /// What a leaf is made with.
 struct Work<'a> {
-    narrowing: &'a mut Narrowing,
+    pruner: &'a mut CandidatePruner,
     lists: &'a mut BlockLists,
     statistics: &'a mut FilterStatistics,
     leaf: Leaf,
@@ -33,7 +33,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
         origin: Ijk,
         triangle: u32,
         distance: f64,
-        narrowing: &mut Narrowing,
+        pruner: &mut CandidatePruner,
         batch: &mut LeafBatch,
         statistics: &mut FilterStatistics,
     ) {
@@ -42,12 +42,12 @@ impl<P: LeafPolicy> Worker<'_, P> {
         let q = ssvh.triangle(triangle).closest(block.centre(self.filter.lattice)).point;
         // A policy without signs decides by lists.
         let most = if P::IS_SIGNED { MOST } else { usize::MAX };
-        if !narrowing.start(ssvh, self.filter.lattice, block, q, most) {
+        if !pruner.collect(ssvh, self.filter.lattice, block, q, most) {
             self.leaf_from_hierarchy(origin, triangle, batch, statistics);
             return;
         }
-        statistics.lists[0] += narrowing.count(0) as u64;
-        match self.state(0, [0.0; 3], block, [distance.abs(); 2], narrowing) {
+        statistics.lists[0] += pruner.count(0) as u64;
+        match self.state(0, [0.0; 3], block, [distance.abs(); 2], pruner) {
             Some(BlockState::Unwanted) => return,
             Some(BlockState::Inside) => {
                 batch.inside_blocks.push((origin, LEAF_DIM));
@@ -56,7 +56,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
             None => {}
         }
         batch.lists.begin_leaf();
-        let mut work = Work { narrowing, lists: &mut batch.lists, statistics, leaf: Leaf::new() };
+        let mut work = Work { pruner, lists: &mut batch.lists, statistics, leaf: Leaf::new() };
         // Without signs, all distances are on one side.
         let side = if P::IS_SIGNED { self.side_around(block, distance) } else { Some(1.0) };
         self.halves(0, block, side, &mut work);
@@ -87,17 +87,17 @@ impl<P: LeafPolicy> Worker<'_, P> {
                 centre[n] = (node & (LEAF_DIM - 1)) as f32 + middle - CENTRE;
             }
         }
-        work.narrowing.measure(depth, &centres, halves[0].side);
+        work.pruner.measure(depth, &centres, halves[0].side);
         // Where signs differ, they are those of the exact closest triangles.
         let exact = side.is_none().then(|| {
             let points = halves.map(|half| half.centre(lattice));
             let ssvh = self.filter.distance.ssvh();
-            let hits = ssvh.closest8_among(work.narrowing.list(depth), &points);
+            let hits = ssvh.closest8_among(work.pruner.list(depth), &points);
             let signed = |n: usize| self.filter.distance.from_triangle(points[n], hits[n].triangle).distance;
             std::array::from_fn::<f64, 8, _>(signed)
         });
         for (n, half) in halves.into_iter().enumerate() {
-            let nearest = work.narrowing.nearest(depth, n);
+            let nearest = work.pruner.nearest(depth, n);
             let [distance, error] = [nearest.distance, nearest.error].map(|x| lattice.voxel * f64::from(x));
             let (signed, error) = match (&exact, side) {
                 (Some(signed), _) => (signed[n], 0.0),
@@ -112,10 +112,10 @@ impl<P: LeafPolicy> Worker<'_, P> {
             }
             work.statistics.octree_queries_valid += 1;
             let side = side.or_else(|| self.side_around(half, signed));
-            work.narrowing.narrow(depth, n);
-            work.statistics.lists[depth + 1] += work.narrowing.count(depth + 1) as u64;
+            work.pruner.prune(depth, n);
+            work.statistics.lists[depth + 1] += work.pruner.count(depth + 1) as u64;
             let range = [distance - error, distance + error];
-            match self.state(depth + 1, centres.map(|c| c[n]), half, range, work.narrowing) {
+            match self.state(depth + 1, centres.map(|c| c[n]), half, range, work.pruner) {
                 Some(BlockState::Unwanted) => continue,
                 Some(BlockState::Inside) => {
                     work.leaf.fill(half, -self.settings.background());
@@ -130,7 +130,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
             let valid = self.nodes_by_list(n, &centres, half, side, work);
             // An edge that the surface crosses has valid ends; other blocks need no list.
             if valid > 0 || !P::IS_SIGNED {
-                let (positions, bounds) = work.narrowing.bounded();
+                let (positions, bounds) = work.pruner.bounded();
                 work.lists.push(half.origin, positions, bounds);
             }
         }
@@ -144,10 +144,10 @@ impl<P: LeafPolicy> Worker<'_, P> {
         centre: [f32; 3],
         block: Block,
         distance: [f64; 2],
-        narrowing: &Narrowing,
+        pruner: &CandidatePruner,
     ) -> Option<BlockState> {
         let (lattice, ssvh) = (self.filter.lattice, self.filter.distance.ssvh());
-        self.policy.decide(&BlockCandidates { narrowing, depth, block, centre, lattice, ssvh, distance })
+        self.policy.decide(&BlockCandidates { pruner, depth, block, centre, lattice, ssvh, distance })
     }
 
     /// Evaluates the eight nodes of a block of side 2, which was narrowed to last as half number `n` with one of `centres`,
@@ -170,7 +170,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
             None => [f32::NEG_INFINITY, f32::INFINITY],
         };
         let ssvh = self.filter.distance.ssvh();
-        let hits = work.narrowing.closest_to_nodes(n, centres, ssvh, &points, wanted);
+        let hits = work.pruner.closest_to_nodes(n, centres, ssvh, &points, wanted);
         self.set_nodes(&nodes, &points, &hits, side, &mut work.leaf, work.statistics)
     }
 }

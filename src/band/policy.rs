@@ -1,6 +1,6 @@
 //! The policy of a band: whether its nodes have signs, and which blocks need no look at each node.
 
-use crate::candidates::Narrowing;
+use crate::candidates::CandidatePruner;
 use crate::filter::Block;
 use crate::lattice::Lattice;
 use crate::ssvh::Ssvh;
@@ -43,7 +43,7 @@ impl LeafPolicy for SignedBand {
 /// A block of nodes with the list of all triangles that can be closest to any of them.
 pub struct BlockCandidates<'a> {
     /// Holds the list, at `depth`.
-    pub(super) narrowing: &'a Narrowing,
+    pub(super) pruner: &'a CandidatePruner,
     pub(super) depth: usize,
     pub(super) block: Block,
     /// The block's centre relative to the leaf's, in voxels.
@@ -65,13 +65,13 @@ impl BlockCandidates<'_> {
     /// list.
     pub fn is_above(&self, height: f64) -> bool {
         let height = (height / self.lattice.voxel) as f32;
-        self.narrowing.is_above(self.depth, self.centre, self.block.side, height)
+        self.pruner.is_above(self.depth, self.centre, self.block.side, height)
     }
 
     /// Whether all nodes are under the planes of all triangles in the list, and no triangle of the list
     /// is excepted.
     pub fn is_below(&self, is_excepted: impl Fn(u32) -> bool) -> bool {
         let by_position = |position: u32| is_excepted(self.ssvh.id_at(position));
-        self.narrowing.is_below(self.depth, self.centre, self.block.side, by_position)
+        self.pruner.is_below(self.depth, self.centre, self.block.side, by_position)
     }
 }

@@ -1,6 +1,6 @@
 //! The lists of all blocks of 2^3 nodes that the offset surface may pass, by leaf.
 
-use super::near::{Candidates, PlaneBound, base, packed};
+use super::bounded_list::{Candidates, PlaneBound, base, packed};
 use crate::filter::Block;
 use crate::lattice::{Ijk, Lattice, LeafIndex};
 

@@ -16,15 +16,15 @@
 //! cancelling, the least of functions that are linear in x, one for each point of T; so it is concave, and least at a
 //! corner.
 
-mod flat;
+mod triangle_f32;
 mod lists;
-mod narrowing;
-mod near;
-mod nodes;
+mod pruner;
+mod bounded_list;
+mod closest_to_nodes;
 #[cfg(test)]
 mod tests;
 
-pub use flat::EightPoints;
+pub use bounded_list::{Candidates, PlaneBound};
 pub use lists::{BlockLists, CandidateLists, block_in_leaf};
-pub use narrowing::{Narrowing, Nearest};
-pub use near::{Candidates, PlaneBound};
+pub use pruner::{CandidatePruner, Nearest};
+pub use triangle_f32::EightPoints;

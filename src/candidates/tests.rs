@@ -19,9 +19,9 @@ fn soup(corners: &[[[f64; 3]; 3]]) -> TriMesh {
 fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]) -> [usize; 3] {
     let ssvh = Ssvh::new(mesh);
     let mut counts = [0; 3];
-    let mut check = |narrowing: &mut Narrowing, depth: usize, block: Block| {
-        counts[depth] += narrowing.count(depth);
-        let list = narrowing.list(depth).to_vec();
+    let mut check = |pruner: &mut CandidatePruner, depth: usize, block: Block| {
+        counts[depth] += pruner.count(depth);
+        let list = pruner.list(depth).to_vec();
         for share in shares {
             let node = DVec3::from(block.origin.0.map(f64::from));
             let p = lattice.voxel * (node + f64::from(block.side) * DVec3::from(*share));
@@ -31,9 +31,9 @@ fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]
     };
     let leaf = Block { origin, side: 8 };
     let q = ssvh.triangle(ssvh.closest(leaf.centre(lattice)).triangle).closest(leaf.centre(lattice)).point;
-    let mut narrowing = Narrowing::default();
-    assert!(narrowing.start(&ssvh, lattice, leaf, q, usize::MAX));
-    check(&mut narrowing, 0, leaf);
+    let mut pruner = CandidatePruner::default();
+    assert!(pruner.collect(&ssvh, lattice, leaf, q, usize::MAX));
+    check(&mut pruner, 0, leaf);
     let centres = |block: Block| {
         let halves = block.children();
         let side = halves[0].side;
@@ -42,22 +42,22 @@ fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]
         };
         std::array::from_fn(|axis| halves.map(|half| centre(half, axis)))
     };
-    narrowing.measure(0, &centres(leaf), 4);
+    pruner.measure(0, &centres(leaf), 4);
     for (n, half) in leaf.children().into_iter().enumerate() {
-        narrowing.narrow(0, n);
-        check(&mut narrowing, 1, half);
-        narrowing.measure(1, &centres(half), 2);
+        pruner.prune(0, n);
+        check(&mut pruner, 1, half);
+        pruner.measure(1, &centres(half), 2);
         for (n, quarter) in half.children().into_iter().enumerate() {
-            let distance = f64::from(narrowing.nearest(1, n).distance) * lattice.voxel;
+            let distance = f64::from(pruner.nearest(1, n).distance) * lattice.voxel;
             let exact = ssvh.closest(quarter.centre(lattice)).distance_squared.sqrt();
-            let error = f64::from(narrowing.nearest(1, n).error) * lattice.voxel;
+            let error = f64::from(pruner.nearest(1, n).error) * lattice.voxel;
             assert!((distance - exact).abs() <= error, "{distance} {exact} {error}");
-            narrowing.narrow(1, n);
-            check(&mut narrowing, 2, quarter);
-            check_nodes(&mut narrowing, n, &centres(half), &ssvh, lattice, quarter);
+            pruner.prune(1, n);
+            check(&mut pruner, 2, quarter);
+            check_nodes(&mut pruner, n, &centres(half), &ssvh, lattice, quarter);
             let mut lists = BlockLists::default();
             lists.begin_leaf();
-            let (positions, bounds) = narrowing.bounded();
+            let (positions, bounds) = pruner.bounded();
             lists.push(quarter.origin, positions, bounds);
             let lists = CandidateLists::new(lattice, [(vec![origin], lists)]);
             let near = lists.of_cell(quarter.origin).unwrap();
@@ -89,7 +89,7 @@ fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]
 
 /// Compares the closest triangles to the nodes of a block with the hierarchy, for all distances and for some.
 fn check_nodes(
-    narrowing: &mut Narrowing,
+    pruner: &mut CandidatePruner,
     n: usize,
     centres: &EightPoints,
     ssvh: &Ssvh,
@@ -101,7 +101,7 @@ fn check_nodes(
     let voxels = exact.map(|hit| hit.distance_squared.sqrt() / lattice.voxel);
     let near = voxels[5] as f32;
     for wanted in [[f32::NEG_INFINITY, f32::INFINITY], [near - 0.1, near + 0.1], [near, near], [0.0, near]] {
-        let hits = narrowing.closest_to_nodes(n, centres, ssvh, &points, wanted);
+        let hits = pruner.closest_to_nodes(n, centres, ssvh, &points, wanted);
         for ((hit, exact), voxels) in hits.iter().zip(&exact).zip(voxels) {
             if hit.triangle != u32::MAX {
                 assert_eq!(hit, exact, "{block:?} {wanted:?}");

@@ -1,14 +1,14 @@
 //! The closest triangles to the nodes of a block: in f32 who can be, in f64 who is.
 
-use super::flat::{EightPoints, FlatTriangle};
-use super::near::PlaneBound;
+use super::bounded_list::PlaneBound;
+use super::triangle_f32::{EightPoints, TriangleF32};
 use crate::geom::simd::{F32s, F64s, Vec3F32s};
 use crate::ssvh::{Closest8, Hit, Ssvh};
 use pulp::{Simd, WithSimd};
 
 /// A triangle whose bound comes near enough to a node.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Passing {
+pub(super) struct Survivor {
     /// Its number among the leaf's.
     number: u32,
     /// Its distances from the nodes, in voxels.
@@ -16,9 +16,9 @@ pub(super) struct Passing {
 }
 
 /// The list of a block of 2^3 nodes, and the nodes. Lengths in voxels, but for `exact`.
-pub(super) struct Nodes<'a> {
+pub(super) struct ClosestToNodes<'a> {
     /// The leaf's triangles, and their positions in the hierarchy.
-    pub(super) flats: &'a [FlatTriangle],
+    pub(super) triangles: &'a [TriangleF32],
     pub(super) positions: &'a [u32],
     /// Numbers among them, and their bounds around the block's centre.
     pub(super) list: &'a [u32],
@@ -30,23 +30,23 @@ pub(super) struct Nodes<'a> {
     pub(super) nodes: &'a EightPoints,
     /// Rounding of a distance.
     pub(super) slack: f32,
-    /// Nodes whose distance is not between these need no more than that.
+    /// ClosestToNodes whose distance is not between these need no more than that.
     pub(super) wanted: [f32; 2],
     pub(super) ssvh: &'a Ssvh,
     /// Model units to a voxel.
     pub(super) voxel: f64,
     /// World positions of the nodes.
     pub(super) exact: &'a [[f64; 8]; 3],
-    pub(super) passing: &'a mut Vec<Passing>,
+    pub(super) survivors: &'a mut Vec<Survivor>,
 }
 
-impl WithSimd for Nodes<'_> {
+impl WithSimd for ClosestToNodes<'_> {
     type Output = [Hit; 8];
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [Hit; 8] {
-        let Nodes { flats, positions, list, planes, from, around, nodes, slack, .. } = self;
-        let Nodes { wanted: [least, most], ssvh, voxel, exact, passing, .. } = self;
+        let ClosestToNodes { triangles, positions, list, planes, from, around, nodes, slack, .. } = self;
+        let ClosestToNodes { wanted: [least, most], ssvh, voxel, exact, survivors, .. } = self;
         let slacks = F32s::splat(simd, slack);
         let nobody = F32s::splat(simd, f32::NEG_INFINITY);
         let mut limits = [0.0; 8];
@@ -59,12 +59,12 @@ impl WithSimd for Nodes<'_> {
             let is_nearer = limit.less(F32s::splat(simd, least));
             is_nearer.select(nobody, limit).store(&mut limits, vector);
         }
-        if passing.len() < list.len() {
-            passing.resize(list.len(), Passing::default());
+        if survivors.len() < list.len() {
+            survivors.resize(list.len(), Survivor::default());
         }
         let mut count = 0;
         for (&number, plane) in list.iter().zip(planes) {
-            passing[count].number = number;
+            survivors[count].number = number;
             let (low, direction) = (F32s::splat(simd, plane.low), Vec3F32s::splat(simd, plane.direction));
             let mut matters = false;
             for vector in 0..8 / F32s::<S>::COUNT {
@@ -73,9 +73,9 @@ impl WithSimd for Nodes<'_> {
             }
             count += usize::from(matters);
         }
-        let passing = &mut passing[..count];
-        for Passing { number, distances } in passing.iter_mut() {
-            let flat = &flats[*number as usize];
+        let survivors = &mut survivors[..count];
+        for Survivor { number, distances } in survivors.iter_mut() {
+            let flat = &triangles[*number as usize];
             for vector in 0..8 / F32s::<S>::COUNT {
                 let (distance, _, _) = flat.distances(simd, Vec3F32s::load(simd, nodes, vector));
                 distance.store(distances, vector);
@@ -89,7 +89,7 @@ impl WithSimd for Nodes<'_> {
             is_farther.select(nobody, limit).store(&mut limits, vector);
         }
         let mut nearest = Closest8::NONE;
-        for Passing { number, distances } in passing.iter() {
+        for Survivor { number, distances } in survivors.iter() {
             let position = positions[*number as usize];
             let triangle = ssvh.triangle_at(position).splat(simd);
             for vector in 0..8 / F64s::<S>::COUNT {

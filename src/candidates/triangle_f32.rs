@@ -8,7 +8,7 @@ use pulp::Simd;
 /// Eight points as structure of arrays.
 pub type EightPoints = [[f32; 8]; 3];
 
-/// Rounding of a distance from a [`FlatTriangle`], in units of the largest coordinate: 64 units in the last place of
+/// Rounding of a distance from a [`TriangleF32`], in units of the largest coordinate: 64 units in the last place of
 /// f32. The computation takes some twenty roundings of half a unit each. Too large only keeps more triangles; too
 /// small could lose the closest one.
 pub(super) const ROUNDING: f32 = 64.0 / 16_777_216.0;
@@ -16,8 +16,8 @@ pub(super) const ROUNDING: f32 = 64.0 / 16_777_216.0;
 /// A triangle relative to a nearby centre, in voxels: a frame of unit vectors for each edge, in which distances need no
 /// closest points.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct FlatTriangle {
-    sides: [FlatSide; 3],
+pub(super) struct TriangleF32 {
+    sides: [EdgeF32; 3],
     /// Unit normal.
     normal: [f32; 3],
     /// The centre's height over the plane.
@@ -26,7 +26,7 @@ pub(super) struct FlatTriangle {
 
 /// An edge of a triangle.
 #[derive(Clone, Copy, Debug)]
-struct FlatSide {
+struct EdgeF32 {
     along: [f32; 3],
     /// How far along the centre is, from the edge's first corner.
     position: f32,
@@ -37,9 +37,9 @@ struct FlatSide {
     outside: f32,
 }
 
-impl FlatSide {
-    fn new(start: Vec3, along: Vec3, length: f32, outward: Vec3) -> FlatSide {
-        FlatSide {
+impl EdgeF32 {
+    fn new(start: Vec3, along: Vec3, length: f32, outward: Vec3) -> EdgeF32 {
+        EdgeF32 {
             along: along.to_array(),
             position: -start.dot(along),
             length,
@@ -49,9 +49,9 @@ impl FlatSide {
     }
 }
 
-impl FlatTriangle {
+impl TriangleF32 {
     /// The triangle seen from `centre`, `scale` voxels to a model unit, and the largest coordinate of its corners.
-    pub fn new(triangle: &Triangle, centre: DVec3, scale: f64) -> (FlatTriangle, f32) {
+    pub fn new(triangle: &Triangle, centre: DVec3, scale: f64) -> (TriangleF32, f32) {
         let exact = triangle.corners.map(|c| (c - centre) * scale);
         let corners = exact.map(|c| c.as_vec3());
         let size = corners.iter().fold(0.0, |size: f32, c| size.max(c.abs().max_element()));
@@ -60,25 +60,25 @@ impl FlatTriangle {
         let squared = edges.map(|edge| edge.length_squared());
         let normal = triangle.normal.as_vec3();
         if normal == Vec3::ZERO || squared.iter().any(|&x| x < f32::MIN_POSITIVE) {
-            return (FlatTriangle::needle(corners, edges, squared), size);
+            return (TriangleF32::needle(corners, edges, squared), size);
         }
         let sides = std::array::from_fn(|k| {
             let length = squared[k].sqrt();
             let along = edges[k] * (1.0 / length);
-            FlatSide::new(corners[k], along, length, along.cross(normal))
+            EdgeF32::new(corners[k], along, length, along.cross(normal))
         });
-        (FlatTriangle { sides, normal: normal.to_array(), height: -corners[0].dot(normal) }, size)
+        (TriangleF32 { sides, normal: normal.to_array(), height: -corners[0].dot(normal) }, size)
     }
 
     /// A triangle without an interior: its longest edge, beyond which every point is, on one side or the other.
-    fn needle(corners: [Vec3; 3], edges: [Vec3; 3], squared: [f32; 3]) -> FlatTriangle {
+    fn needle(corners: [Vec3; 3], edges: [Vec3; 3], squared: [f32; 3]) -> TriangleF32 {
         let longest = (0..3).fold(0, |longest, k| if squared[k] > squared[longest] { k } else { longest });
         let (start, length) = (corners[longest], squared[longest].sqrt());
         let along = edges[longest].try_normalize().unwrap_or(Vec3::X);
         let (normal, outward) = along.any_orthonormal_pair();
-        let side = |outward| FlatSide::new(start, along, length, outward);
+        let side = |outward| EdgeF32::new(start, along, length, outward);
         let sides = [side(outward), side(-outward), side(outward)];
-        FlatTriangle { sides, normal: normal.to_array(), height: -start.dot(normal) }
+        TriangleF32 { sides, normal: normal.to_array(), height: -start.dot(normal) }
     }
 
     /// Between which heights over the triangle's plane the box around `centre` with half-sides `half` is, but for rounding. Zero

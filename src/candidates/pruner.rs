@@ -1,8 +1,8 @@
 //! The lists of one leaf, from the hierarchy down to blocks of 2^3 nodes.
 
 use super::PlaneBound;
-use super::flat::{EightPoints, FlatTriangle, ROUNDING};
-use super::nodes::{Nodes, Passing};
+use super::closest_to_nodes::{ClosestToNodes, Survivor};
+use super::triangle_f32::{EightPoints, ROUNDING, TriangleF32};
 use crate::filter::Block;
 use crate::geom::simd::{F32s, Vec3F32s, dispatch};
 use crate::lattice::Lattice;
@@ -19,11 +19,11 @@ const REACH: f32 = 2.5 * 1.732_051;
 
 /// The working memory for the lists of one leaf after the other.
 #[derive(Debug, Default)]
-pub struct Narrowing {
+pub struct CandidatePruner {
     /// Positions in the hierarchy of the leaf's candidates.
     positions: Vec<u32>,
     /// The same triangles, seen from the leaf's centre.
-    flats: Vec<FlatTriangle>,
+    triangles: Vec<TriangleF32>,
     /// Rounding of distances, in voxels.
     slack: f32,
     /// Model units to a voxel.
@@ -32,7 +32,7 @@ pub struct Narrowing {
     /// The list that was asked for last.
     named: Vec<u32>,
     /// Those that come near a block's nodes.
-    passing: Vec<Passing>,
+    survivors: Vec<Survivor>,
 }
 
 /// A block's candidates and what its eight halves' centres say of them. Of the vectors as much counts as there are
@@ -40,7 +40,7 @@ pub struct Narrowing {
 #[derive(Debug, Default)]
 struct Level {
     count: usize,
-    /// Numbers in `flats`.
+    /// Numbers in `triangles`.
     list: Vec<u32>,
     /// Their bounds around the centre of the block itself, where it is of the last level.
     planes: Vec<PlaneBound>,
@@ -81,10 +81,10 @@ pub struct Nearest {
     pub(super) from: [f32; 3],
 }
 
-impl Narrowing {
+impl CandidatePruner {
     /// Collects the candidates of a leaf from the hierarchy, and returns whether there are no more than `most`; otherwise
     /// there are none to work with. `q` is a point of the mesh near the leaf.
-    pub fn start(&mut self, ssvh: &Ssvh, lattice: Lattice, leaf: Block, q: DVec3, most: usize) -> bool {
+    pub fn collect(&mut self, ssvh: &Ssvh, lattice: Lattice, leaf: Block, q: DVec3, most: usize) -> bool {
         let centre = leaf.centre(lattice);
         let [x, y, z] = corners(leaf.side).map(|lane| lane.map(f64::from));
         let corners = std::array::from_fn(|n| centre + lattice.voxel * DVec3::new(x[n], y[n], z[n]));
@@ -97,9 +97,9 @@ impl Narrowing {
         self.voxel = lattice.voxel;
         let scale = 1.0 / lattice.voxel;
         let mut largest = leaf.side as f32;
-        self.flats.clear();
-        self.flats.extend(self.positions.iter().map(|&p| {
-            let (flat, size) = FlatTriangle::new(ssvh.triangle_at(p), centre, scale);
+        self.triangles.clear();
+        self.triangles.extend(self.positions.iter().map(|&p| {
+            let (flat, size) = TriangleF32::new(ssvh.triangle_at(p), centre, scale);
             largest = largest.max(size);
             flat
         }));
@@ -118,7 +118,7 @@ impl Narrowing {
         let Level { count, list, bounds, matters, nearest, .. } = &mut self.levels[depth];
         let list = &list[..*count];
         let bounds = at_least(bounds, *count);
-        *nearest = dispatch(Measure { flats: &self.flats, list, centres, slack: self.slack, bounds });
+        *nearest = dispatch(Measure { triangles: &self.triangles, list, centres, slack: self.slack, bounds });
         let matters = at_least(matters, *count);
         dispatch(Reach { bounds, nearest, ends: ends(side), slack: self.slack, matters });
     }
@@ -129,7 +129,7 @@ impl Narrowing {
     }
 
     /// Narrows the measured list of `depth` to half number `n`: the list of `depth` + 1.
-    pub fn narrow(&mut self, depth: usize, n: usize) {
+    pub fn prune(&mut self, depth: usize, n: usize) {
         let [.., parent, child] = &mut self.levels[..depth + 2] else { unreachable!("two levels") };
         // Every candidate is written, and the next one over it where it does not matter: no branch to guess wrong.
         let kept = at_least(&mut child.kept, parent.count);
@@ -157,7 +157,7 @@ impl Narrowing {
         let half = 0.5 * (side - 1) as f32;
         let least = above + self.slack;
         let list = self.levels[depth].list();
-        list.iter().all(|&n| self.flats[n as usize].heights(centre, half)[0] > least)
+        list.iter().all(|&n| self.triangles[n as usize].heights(centre, half)[0] > least)
     }
 
     /// Whether all of them are under the planes of all triangles in that list, none of which is excepted, by its position.
@@ -171,7 +171,7 @@ impl Narrowing {
         let half = 0.5 * (side - 1) as f32;
         self.levels[depth].list().iter().all(|&n| {
             let n = n as usize;
-            self.flats[n].heights(centre, half)[1] < -self.slack && !is_excepted(self.positions[n])
+            self.triangles[n].heights(centre, half)[1] < -self.slack && !is_excepted(self.positions[n])
         })
     }
 
@@ -204,8 +204,8 @@ impl Narrowing {
         for (nodes, centres) in nodes.iter_mut().zip(centres) {
             *nodes = nodes.map(|x| x + centres[n]);
         }
-        dispatch(Nodes {
-            flats: &self.flats,
+        dispatch(ClosestToNodes {
+            triangles: &self.triangles,
             positions: &self.positions,
             list: block.list(),
             planes: block.planes(),
@@ -218,7 +218,7 @@ impl Narrowing {
             ssvh,
             voxel: self.voxel,
             exact: &[points.map(|p| p.x), points.map(|p| p.y), points.map(|p| p.z)],
-            passing: &mut self.passing,
+            survivors: &mut self.survivors,
         })
     }
 
@@ -259,7 +259,7 @@ const NODES: EightPoints = {
 
 /// Bounds of a list's triangles from eight centres, and the nearest ones.
 struct Measure<'a> {
-    flats: &'a [FlatTriangle],
+    triangles: &'a [TriangleF32],
     list: &'a [u32],
     centres: &'a EightPoints,
     slack: f32,
@@ -271,7 +271,7 @@ impl WithSimd for Measure<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [Nearest; 8] {
-        let Measure { flats, list, centres, slack, bounds } = self;
+        let Measure { triangles, list, centres, slack, bounds } = self;
         let (mut least, mut from) = ([0.0; 8], [[0.0; 8]; 3]);
         let slacks = F32s::splat(simd, slack);
         let unknown = F32s::splat(simd, slack * REACH);
@@ -280,7 +280,7 @@ impl WithSimd for Measure<'_> {
             let mut nearest = F32s::splat(simd, f32::INFINITY);
             let mut way = Vec3F32s::splat(simd, [0.0; 3]);
             for (bound, &n) in bounds.iter_mut().zip(list) {
-                let (distance, inverse, direction) = flats[n as usize].distances(simd, p);
+                let (distance, inverse, direction) = triangles[n as usize].distances(simd, p);
                 let nearer = distance.less(nearest);
                 nearest = nearer.select(distance, nearest);
                 way = nearer.select_points(direction, way);
