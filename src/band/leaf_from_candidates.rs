@@ -130,8 +130,8 @@ impl<P: LeafPolicy> Worker<'_, P> {
             let valid = self.nodes_by_list(n, &centres, half, side, work);
             // An edge that the surface crosses has valid ends; other blocks need no list.
             if valid > 0 || !P::IS_SIGNED {
-                let (positions, bounds) = work.pruner.bounded();
-                work.lists.push(half.origin, positions, bounds);
+                let (slots, bounds) = work.pruner.bounded();
+                work.lists.push(half.origin, slots, bounds);
             }
         }
     }

@@ -71,7 +71,7 @@ impl BlockCandidates<'_> {
     /// Whether all nodes are under the planes of all triangles in the list, and no triangle of the list
     /// is excepted.
     pub fn is_below(&self, is_excepted: impl Fn(u32) -> bool) -> bool {
-        let by_position = |position: u32| is_excepted(self.ssvh.id_at(position));
-        self.pruner.is_below(self.depth, self.centre, self.block.side, by_position)
+        let by_slot = |slot: u32| is_excepted(self.ssvh.id_at(slot));
+        self.pruner.is_below(self.depth, self.centre, self.block.side, by_slot)
     }
 }

@@ -232,7 +232,7 @@ fn leaves_with_too_many_candidates_ask_the_hierarchy() {
     let run = RunSettings::with_threads(2).unwrap();
     let size = Aabb::around(mesh.vertices.iter().map(|&v| DVec3::from(v))).size().x;
     // All leaves, and some.
-    for (voxels, leaf_from_candidates) in [(12.0, [false, true]), (32.0, [true, true])] {
+    for (voxels, by_lists) in [(12.0, [false, true]), (32.0, [true, true])] {
         let lattice = Lattice { voxel: size / voxels };
         let settings = BandSettings { lattice, r: 0.1 * size, half_width: 1.0, slab: Slab::WHOLE };
         let leaves = |candidates| {
@@ -253,7 +253,7 @@ fn leaves_with_too_many_candidates_ask_the_hierarchy() {
             (leaves, [with > 0, without > 0])
         };
         let (found, kinds) = leaves(Switch::On);
-        assert_eq!(kinds, leaf_from_candidates, "{voxels}");
+        assert_eq!(kinds, by_lists, "{voxels}");
         assert!(found == leaves(Switch::Off).0, "{voxels}");
     }
 }

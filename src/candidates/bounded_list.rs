@@ -67,8 +67,8 @@ pub(super) fn base(bounds: &[PlaneBound]) -> f32 {
 /// The triangles that can be closest to a point of a block or of the cells at its nodes.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidates<'a> {
-    /// Their positions in the hierarchy.
-    pub(super) positions: &'a [u32],
+    /// Their slots in the hierarchy.
+    pub(super) slots: &'a [u32],
     /// Their bounds.
     pub(super) packed: &'a [u32],
     /// What the bounds are above.
@@ -87,15 +87,15 @@ impl Candidates<'_> {
         let scale = 1.0 / self.voxel;
         let x = self.local(p);
         // Whatever is as near as this comes before it.
-        let mut best = Hit { triangle: ssvh.id_at(self.positions[0]), distance_squared: f64::INFINITY };
+        let mut best = Hit { triangle: ssvh.id_at(self.slots[0]), distance_squared: f64::INFINITY };
         let mut most = f32::INFINITY;
-        for (positions, packed) in self.positions.chunks(TOGETHER).zip(self.packed.chunks(TOGETHER)) {
+        for (slots, packed) in self.slots.chunks(TOGETHER).zip(self.packed.chunks(TOGETHER)) {
             let mut bounds = [0.0; TOGETHER];
             let least = dispatch(LeastBounds { packed, points: &[x], bounds: &mut bounds });
             // The one with the least bound is nearest most of the time; after it few others matter.
             let first = bounds.iter().position(|&bound| bound == least).unwrap_or(0);
             bounds.swap(0, first);
-            for (n, &bound) in bounds[..positions.len()].iter().enumerate() {
+            for (n, &bound) in bounds[..slots.len()].iter().enumerate() {
                 if bound > most {
                     continue;
                 }
@@ -105,15 +105,15 @@ impl Candidates<'_> {
                     n if n == first => 0,
                     n => n,
                 };
-                let position = positions[n];
-                let hit = ssvh.hit(position, p);
+                let slot = slots[n];
+                let hit = ssvh.hit(slot, p);
                 if hit.before(&best) {
                     best = hit;
                     let distance = ((best.distance_squared.sqrt() * scale) as f32).next_up();
                     most = distance + LOSS - self.base;
                 }
             }
-            if self.positions.len() > LONG {
+            if self.slots.len() > LONG {
                 return ssvh.closest_from(p, best.triangle);
             }
         }
@@ -214,17 +214,15 @@ impl WithSimd for Closest8InBlock<'_> {
         let Closest8InBlock { candidates, ssvh, exact, near, most } = self;
         let mut nearest = Closest8::NONE;
         let mut bounds = [0.0; TOGETHER];
-        for (positions, packed) in
-            candidates.positions.chunks(TOGETHER).zip(candidates.packed.chunks(TOGETHER))
-        {
+        for (slots, packed) in candidates.slots.chunks(TOGETHER).zip(candidates.packed.chunks(TOGETHER)) {
             LeastBounds { packed, points: near, bounds: &mut bounds }.with_simd(simd);
-            for (&position, &bound) in positions.iter().zip(&bounds) {
+            for (&slot, &bound) in slots.iter().zip(&bounds) {
                 if bound > most {
                     continue;
                 }
-                let triangle = ssvh.triangle_at(position).splat(simd);
+                let triangle = ssvh.triangle_at(slot).splat(simd);
                 for vector in 0..near.len().div_ceil(F64s::<S>::COUNT) {
-                    nearest.offer(simd, &triangle, ssvh.id_at(position), exact, vector);
+                    nearest.offer(simd, &triangle, ssvh.id_at(slot), exact, vector);
                 }
             }
         }

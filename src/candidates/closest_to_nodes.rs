@@ -17,9 +17,9 @@ pub(super) struct Survivor {
 
 /// The list of a block of 2^3 nodes, and the nodes. Lengths in voxels, but for `exact`.
 pub(super) struct ClosestToNodes<'a> {
-    /// The leaf's triangles, and their positions in the hierarchy.
+    /// The leaf's triangles, and their slots in the hierarchy.
     pub(super) triangles: &'a [TriangleF32],
-    pub(super) positions: &'a [u32],
+    pub(super) slots: &'a [u32],
     /// Numbers among them, and their bounds around the block's centre.
     pub(super) list: &'a [u32],
     pub(super) planes: &'a [PlaneBound],
@@ -45,7 +45,7 @@ impl WithSimd for ClosestToNodes<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [Hit; 8] {
-        let ClosestToNodes { triangles, positions, list, planes, from, around, nodes, slack, .. } = self;
+        let ClosestToNodes { triangles, slots, list, planes, from, around, nodes, slack, .. } = self;
         let ClosestToNodes { wanted: [least, most], ssvh, voxel, exact, survivors, .. } = self;
         let slacks = F32s::splat(simd, slack);
         let nobody = F32s::splat(simd, f32::NEG_INFINITY);
@@ -75,9 +75,9 @@ impl WithSimd for ClosestToNodes<'_> {
         }
         let survivors = &mut survivors[..count];
         for Survivor { number, distances } in survivors.iter_mut() {
-            let flat = &triangles[*number as usize];
+            let triangle = &triangles[*number as usize];
             for vector in 0..8 / F32s::<S>::COUNT {
-                let (distance, _, _) = flat.distances(simd, Vec3F32s::load(simd, nodes, vector));
+                let (distance, _, _) = triangle.distances(simd, Vec3F32s::load(simd, nodes, vector));
                 distance.store(distances, vector);
                 F32s::load(simd, &limits, vector).min(distance + slacks).store(&mut limits, vector);
                 F32s::load(simd, &found, vector).min(distance).store(&mut found, vector);
@@ -90,11 +90,11 @@ impl WithSimd for ClosestToNodes<'_> {
         }
         let mut nearest = Closest8::NONE;
         for Survivor { number, distances } in survivors.iter() {
-            let position = positions[*number as usize];
-            let triangle = ssvh.triangle_at(position).splat(simd);
+            let slot = slots[*number as usize];
+            let triangle = ssvh.triangle_at(slot).splat(simd);
             for vector in 0..8 / F64s::<S>::COUNT {
                 if any_within::<S>(distances, &limits, vector) {
-                    nearest.offer(simd, &triangle, ssvh.id_at(position), exact, vector);
+                    nearest.offer(simd, &triangle, ssvh.id_at(slot), exact, vector);
                 }
             }
         }

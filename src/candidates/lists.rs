@@ -19,8 +19,8 @@ pub struct BlockLists {
     ends: Vec<usize>,
     /// Per block what the bounds of its list are above.
     bases: Vec<f32>,
-    /// Per candidate its position in the hierarchy.
-    positions: Vec<u32>,
+    /// Per candidate its slot in the hierarchy.
+    slots: Vec<u32>,
     /// And its bound, packed.
     packed: Vec<u32>,
 }
@@ -36,7 +36,7 @@ struct Leaf {
 
 /// The list of a block.
 struct List<'a> {
-    positions: &'a [u32],
+    slots: &'a [u32],
     packed: &'a [u32],
     base: f32,
 }
@@ -49,11 +49,11 @@ impl BlockLists {
 
     /// Takes all out; the room stays.
     pub fn clear(&mut self) {
-        let BlockLists { leaves, ends, bases, positions, packed } = self;
+        let BlockLists { leaves, ends, bases, slots, packed } = self;
         leaves.clear();
         ends.clear();
         bases.clear();
-        positions.clear();
+        slots.clear();
         packed.clear();
     }
 
@@ -71,31 +71,26 @@ impl BlockLists {
         self.ends.truncate(leaf.first);
         self.bases.truncate(leaf.first);
         let end = self.ends.last().copied().unwrap_or(0);
-        self.positions.truncate(end);
+        self.slots.truncate(end);
         self.packed.truncate(end);
     }
 
-    /// Adds the list of the block at `origin` to the last leaf that was begun: positions of triangles in the hierarchy, and
+    /// Adds the list of the block at `origin` to the last leaf that was begun: slots of triangles in the hierarchy, and
     /// bounds around the centre of the block's nodes. Blocks of a leaf come by ascending number.
     ///
     /// # Panics
     /// When no leaf was begun, or the block is not the next.
-    pub fn push(
-        &mut self,
-        origin: Ijk,
-        positions: impl ExactSizeIterator<Item = u32>,
-        bounds: &[PlaneBound],
-    ) {
+    pub fn push(&mut self, origin: Ijk, slots: impl ExactSizeIterator<Item = u32>, bounds: &[PlaneBound]) {
         let leaf = self.leaves.last_mut().expect("a leaf was begun");
         let number = block_in_leaf(origin);
         assert!(leaf.mask >> number == 0, "blocks come by ascending number");
         leaf.mask |= 1 << number;
         let base = base(bounds);
-        self.positions.extend(positions);
+        self.slots.extend(slots);
         self.packed.extend(bounds.iter().map(|&bound| packed(bound, base)));
-        assert_eq!(self.positions.len(), self.packed.len(), "a bound for each position");
+        assert_eq!(self.slots.len(), self.packed.len(), "a bound for each slot");
         self.bases.push(base);
-        self.ends.push(self.positions.len());
+        self.ends.push(self.slots.len());
     }
 
     /// Forgets the lists of the last leaf that was begun but those of some of its blocks, a bit for each number.
@@ -115,7 +110,7 @@ impl BlockLists {
             block &= block - 1;
             if is_kept {
                 let length = range.len();
-                self.positions.copy_within(range.clone(), end);
+                self.slots.copy_within(range.clone(), end);
                 self.packed.copy_within(range, end);
                 end += length;
                 self.ends[kept] = end;
@@ -125,7 +120,7 @@ impl BlockLists {
         }
         self.ends.truncate(kept);
         self.bases.truncate(kept);
-        self.positions.truncate(end);
+        self.slots.truncate(end);
         self.packed.truncate(end);
     }
 
@@ -139,11 +134,7 @@ impl BlockLists {
         let list = first + (mask & (bit - 1)).count_ones() as usize;
         let start = list.checked_sub(1).map_or(0, |before| self.ends[before]);
         let range = start..self.ends[list];
-        Some(List {
-            positions: &self.positions[range.clone()],
-            packed: &self.packed[range],
-            base: self.bases[list],
-        })
+        Some(List { slots: &self.slots[range.clone()], packed: &self.packed[range], base: self.bases[list] })
     }
 }
 
@@ -180,10 +171,10 @@ impl CandidateLists {
     #[inline]
     pub fn of_cell(&self, node: Ijk) -> Option<Candidates<'_>> {
         let (part, leaf) = self.places[self.index.get(node)?];
-        let List { positions, packed, base } = self.parts[part as usize].list(leaf as usize, node)?;
+        let List { slots, packed, base } = self.parts[part as usize].list(leaf as usize, node)?;
         let block = Block { origin: Ijk(node.0.map(|x| x & !1)), side: 2 };
         Some(Candidates {
-            positions,
+            slots,
             packed,
             base,
             centre: block.centre(self.lattice),

@@ -20,8 +20,8 @@ const REACH: f32 = 2.5 * 1.732_051;
 /// The working memory for the lists of one leaf after the other.
 #[derive(Debug, Default)]
 pub struct CandidatePruner {
-    /// Positions in the hierarchy of the leaf's candidates.
-    positions: Vec<u32>,
+    /// Slots in the hierarchy of the leaf's candidates.
+    slots: Vec<u32>,
     /// The same triangles, seen from the leaf's centre.
     triangles: Vec<TriangleF32>,
     /// Rounding of distances, in voxels.
@@ -89,24 +89,24 @@ impl CandidatePruner {
         let [x, y, z] = corners(leaf.side).map(|lane| lane.map(f64::from));
         let corners = std::array::from_fn(|n| centre + lattice.voxel * DVec3::new(x[n], y[n], z[n]));
         let limits = corners.map(|c: DVec3| (c - q).length());
-        self.positions.clear();
-        ssvh.collect(&corners, &limits, most, &mut self.positions);
-        if self.positions.len() > most {
+        self.slots.clear();
+        ssvh.collect(&corners, &limits, most, &mut self.slots);
+        if self.slots.len() > most {
             return false;
         }
         self.voxel = lattice.voxel;
         let scale = 1.0 / lattice.voxel;
         let mut largest = leaf.side as f32;
         self.triangles.clear();
-        self.triangles.extend(self.positions.iter().map(|&p| {
-            let (flat, size) = TriangleF32::new(ssvh.triangle_at(p), centre, scale);
+        self.triangles.extend(self.slots.iter().map(|&slot| {
+            let (triangle, size) = TriangleF32::new(ssvh.triangle_at(slot), centre, scale);
             largest = largest.max(size);
-            flat
+            triangle
         }));
         self.slack = ROUNDING * largest;
         let Level { list, count, .. } = &mut self.levels[0];
         list.clear();
-        list.extend(0..self.positions.len() as u32);
+        list.extend(0..self.slots.len() as u32);
         *count = list.len();
         true
     }
@@ -160,7 +160,7 @@ impl CandidatePruner {
         list.iter().all(|&n| self.triangles[n as usize].heights(centre, half)[0] > least)
     }
 
-    /// Whether all of them are under the planes of all triangles in that list, none of which is excepted, by its position.
+    /// Whether all of them are under the planes of all triangles in that list, none of which is excepted, by its slot.
     pub fn is_below(
         &self,
         depth: usize,
@@ -171,7 +171,7 @@ impl CandidatePruner {
         let half = 0.5 * (side - 1) as f32;
         self.levels[depth].list().iter().all(|&n| {
             let n = n as usize;
-            self.triangles[n].heights(centre, half)[1] < -self.slack && !is_excepted(self.positions[n])
+            self.triangles[n].heights(centre, half)[1] < -self.slack && !is_excepted(self.slots[n])
         })
     }
 
@@ -180,11 +180,11 @@ impl CandidatePruner {
         self.levels[depth].count
     }
 
-    /// The list of the block of 2^3 nodes that was narrowed to last: positions in the hierarchy, and bounds around the
+    /// The list of the block of 2^3 nodes that was narrowed to last: slots in the hierarchy, and bounds around the
     /// block's centre.
     pub fn bounded(&self) -> (impl ExactSizeIterator<Item = u32> + '_, &[PlaneBound]) {
         let level = &self.levels[LEVELS - 1];
-        (level.list().iter().map(|&n| self.positions[n as usize]), level.planes())
+        (level.list().iter().map(|&n| self.slots[n as usize]), level.planes())
     }
 
     /// The closest triangles to the nodes of the block of 2^3 nodes that was narrowed to last, as [`Ssvh::closest`] finds
@@ -206,7 +206,7 @@ impl CandidatePruner {
         }
         dispatch(ClosestToNodes {
             triangles: &self.triangles,
-            positions: &self.positions,
+            slots: &self.slots,
             list: block.list(),
             planes: block.planes(),
             from: parent.nearest[n].from,
@@ -222,11 +222,11 @@ impl CandidatePruner {
         })
     }
 
-    /// Positions in the hierarchy of the list of `depth`.
+    /// Slots in the hierarchy of the list of `depth`.
     pub fn list(&mut self, depth: usize) -> &[u32] {
         let list = self.levels[depth].list().iter();
         self.named.clear();
-        self.named.extend(list.map(|&n| self.positions[n as usize]));
+        self.named.extend(list.map(|&n| self.slots[n as usize]));
         &self.named
     }
 }

@@ -57,8 +57,8 @@ fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]
             check_nodes(&mut pruner, n, &centres(half), &ssvh, lattice, quarter);
             let mut lists = BlockLists::default();
             lists.begin_leaf();
-            let (positions, bounds) = pruner.bounded();
-            lists.push(quarter.origin, positions, bounds);
+            let (slots, bounds) = pruner.bounded();
+            lists.push(quarter.origin, slots, bounds);
             let lists = CandidateLists::new(lattice, [(vec![origin], lists)]);
             let near = lists.of_cell(quarter.origin).unwrap();
             let points: Vec<DVec3> = shares
@@ -170,10 +170,10 @@ proptest! {
 
 #[test]
 fn lists_are_kept_by_block() {
-    let push = |lists: &mut BlockLists, origin: [i32; 3], positions: &[u32]| {
+    let push = |lists: &mut BlockLists, origin: [i32; 3], slots: &[u32]| {
         let bound = |&p: &u32| PlaneBound { low: p as f32, direction: [0.6, 0.0, -0.8] };
-        let bounds: Vec<PlaneBound> = positions.iter().map(bound).collect();
-        lists.push(Ijk(origin), positions.iter().copied(), &bounds);
+        let bounds: Vec<PlaneBound> = slots.iter().map(bound).collect();
+        lists.push(Ijk(origin), slots.iter().copied(), &bounds);
     };
     let mut lists = BlockLists::default();
     lists.begin_leaf();
@@ -195,7 +195,7 @@ fn lists_are_kept_by_block() {
     push(&mut others, [30, 6, 6], &[1, 2, 3]);
     let parts = [(vec![Ijk([0, 0, 0]), Ijk([8, 0, 0])], lists), (vec![Ijk([24, 0, 0])], others)];
     let lists = CandidateLists::new(Lattice { voxel: 0.5 }, parts);
-    let named = |near: Option<Candidates>| -> Option<Vec<u32>> { near.map(|near| near.positions.to_vec()) };
+    let named = |near: Option<Candidates>| -> Option<Vec<u32>> { near.map(|near| near.slots.to_vec()) };
     assert_eq!(named(lists.of_cell(Ijk([1, 1, 3]))), Some(vec![6, 5]));
     assert_eq!(named(lists.of_cell(Ijk([5, 0, 1]))), Some(vec![7]));
     assert_eq!(named(lists.of_cell(Ijk([31, 7, 7]))), Some(vec![1, 2, 3]));

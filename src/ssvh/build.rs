@@ -13,10 +13,10 @@ use rayon::prelude::*;
 pub struct Ssvh {
     pub(super) nodes: Vec<Node>,
     pub(super) triangles: Vec<Triangle>,
-    /// Mesh triangle number by position in the hierarchy's order.
+    /// Mesh triangle number by slot in the hierarchy's order.
     pub(super) ids: Vec<u32>,
     /// Position in the hierarchy's order by mesh triangle number.
-    positions: Vec<u32>,
+    slots: Vec<u32>,
     pub(super) centre: DVec3,
     /// No coordinate relative to the centre is larger than this.
     pub(super) extent: f64,
@@ -65,22 +65,22 @@ impl Ssvh {
         Builder { mesh, centre }.build(&mut primitives, &mut nodes, 0, 0);
 
         let ids: Vec<u32> = primitives.par_iter().map(|p| p.id).collect();
-        let mut positions = vec![0; count];
-        for (position, &id) in ids.iter().enumerate() {
-            positions[id as usize] = position as u32;
+        let mut slots = vec![0; count];
+        for (slot, &id) in ids.iter().enumerate() {
+            slots[id as usize] = slot as u32;
         }
         let triangles = ids.par_iter().map(|&id| triangle(mesh, id)).collect();
-        Ssvh { nodes, triangles, ids, positions, centre, extent }
+        Ssvh { nodes, triangles, ids, slots, centre, extent }
     }
 
     /// The triangle with mesh number `id`.
     pub fn triangle(&self, id: u32) -> &Triangle {
-        &self.triangles[self.positions[id as usize] as usize]
+        &self.triangles[self.slots[id as usize] as usize]
     }
 
-    /// The position of mesh triangle `id` in the hierarchy's order.
-    pub(super) fn position(&self, id: u32) -> usize {
-        self.positions[id as usize] as usize
+    /// The slot of mesh triangle `id` in the hierarchy's order.
+    pub(super) fn slot(&self, id: u32) -> usize {
+        self.slots[id as usize] as usize
     }
 
     /// The number of triangles.
@@ -125,37 +125,32 @@ struct Builder<'a> {
 
 impl Builder<'_> {
     /// Builds the subtree over `primitives` into `nodes`, whose first has the number `number`; the first
-    /// primitive has the position `position`. Returns what encloses the subtree: spheres.
+    /// primitive has the slot `slot`. Returns what encloses the subtree: spheres.
     fn build(
         &self,
         primitives: &mut [Primitive],
         nodes: &mut [Node],
         number: usize,
-        position: usize,
+        slot: usize,
     ) -> Vec<Sphere> {
         let (node, below) = nodes.split_first_mut().expect("a subtree has a node");
         if primitives.len() <= WIDTH {
-            *node = self.leaf(primitives, position);
+            *node = self.leaf(primitives, slot);
         } else {
             let capacity = child_capacity(primitives.len());
             split(primitives, capacity);
             let mut tasks: Vec<Subtree> = Vec::with_capacity(WIDTH);
             let mut below = below;
-            let (mut child_number, mut child_position) = (number + 1, position);
+            let (mut child_number, mut child_slot) = (number + 1, slot);
             for child in primitives.chunks_mut(capacity) {
                 let (own, rest) = below.split_at_mut(node_count(child.len()));
                 below = rest;
-                let next = (child_number + own.len(), child_position + child.len());
-                tasks.push(Subtree {
-                    primitives: child,
-                    nodes: own,
-                    number: child_number,
-                    position: child_position,
-                });
-                (child_number, child_position) = next;
+                let next = (child_number + own.len(), child_slot + child.len());
+                tasks.push(Subtree { primitives: child, nodes: own, number: child_number, slot: child_slot });
+                (child_number, child_slot) = next;
             }
-            let build = |s: Subtree| (s.number, self.build(s.primitives, s.nodes, s.number, s.position));
-            let children: Vec<(usize, Vec<Sphere>)> = if position_count(&tasks) >= PARALLEL {
+            let build = |s: Subtree| (s.number, self.build(s.primitives, s.nodes, s.number, s.slot));
+            let children: Vec<(usize, Vec<Sphere>)> = if triangle_count(&tasks) >= PARALLEL {
                 tasks.into_par_iter().map(build).collect()
             } else {
                 tasks.into_iter().map(build).collect()
@@ -168,11 +163,11 @@ impl Builder<'_> {
         self.enclosing(primitives, node)
     }
 
-    fn leaf(&self, primitives: &[Primitive], position: usize) -> Node {
+    fn leaf(&self, primitives: &[Primitive], slot: usize) -> Node {
         let mut node = Node::EMPTY;
         for (i, primitive) in primitives.iter().enumerate() {
             let corners = self.corners(primitive.id);
-            node.push((position + i) as u32, &Swept::around_triangle(corners), &corners.map(|c| (c, 0.0)));
+            node.push((slot + i) as u32, &Swept::around_triangle(corners), &corners.map(|c| (c, 0.0)));
         }
         node
     }
@@ -187,7 +182,7 @@ impl Builder<'_> {
             return primitives.iter().flat_map(|p| self.corners(p.id)).map(|c| (c, 0.0)).collect();
         }
         (0..node.count as usize)
-            .map(|slot| node.swept(slot))
+            .map(|lane| node.swept(lane))
             .flat_map(|s| s.corners().map(|c| (c, s.radius)))
             .collect()
     }
@@ -197,10 +192,10 @@ struct Subtree<'a> {
     primitives: &'a mut [Primitive],
     nodes: &'a mut [Node],
     number: usize,
-    position: usize,
+    slot: usize,
 }
 
-fn position_count(tasks: &[Subtree]) -> usize {
+fn triangle_count(tasks: &[Subtree]) -> usize {
     tasks.iter().map(|t| t.primitives.len()).sum()
 }
 

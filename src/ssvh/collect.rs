@@ -8,49 +8,46 @@ use glam::DVec3;
 use pulp::{Simd, WithSimd};
 
 impl Ssvh {
-    /// Appends to `found` the positions, in the hierarchy's order, of all triangles whose distance from one of the
+    /// Appends to `found` the slots, in the hierarchy's order, of all triangles whose distance from one of the
     /// points is at most that point's limit, and of some that are a little farther. Gives up when `found` holds more than
     /// `most`.
     pub fn collect(&self, points: &[DVec3; 8], limits: &[f64; 8], most: usize, found: &mut Vec<u32>) {
         dispatch(Collect { tree: self, points, limits, most, found });
     }
 
-    /// The triangle at a position of the hierarchy's order.
+    /// The triangle at a slot of the hierarchy's order.
     #[inline]
-    pub fn triangle_at(&self, position: u32) -> &Triangle {
-        &self.triangles[position as usize]
+    pub fn triangle_at(&self, slot: u32) -> &Triangle {
+        &self.triangles[slot as usize]
     }
 
-    /// The mesh number of the triangle at a position of the hierarchy's order.
+    /// The mesh number of the triangle at a slot of the hierarchy's order.
     #[inline]
-    pub fn id_at(&self, position: u32) -> u32 {
-        self.ids[position as usize]
+    pub fn id_at(&self, slot: u32) -> u32 {
+        self.ids[slot as usize]
     }
 
-    /// The triangle at a position of the hierarchy's order, with its squared distance from `p`.
+    /// The triangle at a slot of the hierarchy's order, with its squared distance from `p`.
     #[inline]
-    pub fn hit(&self, position: u32, p: DVec3) -> Hit {
-        Hit {
-            triangle: self.id_at(position),
-            distance_squared: self.triangle_at(position).distance_squared(p),
-        }
+    pub fn hit(&self, slot: u32, p: DVec3) -> Hit {
+        Hit { triangle: self.id_at(slot), distance_squared: self.triangle_at(slot).distance_squared(p) }
     }
 
-    /// The closest to eight points of the triangles at `positions`, as [`closest`](Self::closest) finds it among all.
+    /// The closest to eight points of the triangles at `slots`, as [`closest`](Self::closest) finds it among all.
     ///
     /// # Panics
     /// When there are none.
-    pub fn closest8_among(&self, positions: &[u32], points: &[DVec3; 8]) -> [Hit; 8] {
-        assert!(!positions.is_empty(), "a list of triangles");
+    pub fn closest8_among(&self, slots: &[u32], points: &[DVec3; 8]) -> [Hit; 8] {
+        assert!(!slots.is_empty(), "a list of triangles");
         let points = [points.map(|p| p.x), points.map(|p| p.y), points.map(|p| p.z)];
-        dispatch(Closest8Among { ssvh: self, positions, points: &points })
+        dispatch(Closest8Among { ssvh: self, slots, points: &points })
     }
 }
 
 /// The closest of a list to eight points.
 struct Closest8Among<'a> {
     ssvh: &'a Ssvh,
-    positions: &'a [u32],
+    slots: &'a [u32],
     points: &'a [[f64; 8]; 3],
 }
 
@@ -59,10 +56,10 @@ impl WithSimd for Closest8Among<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [Hit; 8] {
-        let Closest8Among { ssvh, positions, points } = self;
+        let Closest8Among { ssvh, slots, points } = self;
         let mut nearest = Closest8::NONE;
-        for &position in positions {
-            nearest.offer_to_all(simd, ssvh, position, points);
+        for &slot in slots {
+            nearest.offer_to_all(simd, ssvh, slot, points);
         }
         nearest.hits()
     }
@@ -100,8 +97,8 @@ struct Append<'a> {
 
 impl Visit for Append<'_> {
     #[inline(always)]
-    fn visit<S: Simd>(&mut self, _: S, position: u32, _: &mut [f32; 8]) -> bool {
-        self.found.push(position);
+    fn visit<S: Simd>(&mut self, _: S, slot: u32, _: &mut [f32; 8]) -> bool {
+        self.found.push(slot);
         self.found.len() <= self.most
     }
 }

@@ -1,7 +1,7 @@
 //! Swept sphere volume hierarchy over the triangles of a mesh (\[LW11\] section IV.A, Larsen et al. 2000).
 //!
-//! A tree with eight children per node. Every child slot, inner node or single triangle, carries the
-//! best fitting of a point-, line- or rectangle-swept sphere in f32, conservatively rounded; eight slots
+//! A tree with eight children per node. Every child lane, inner node or single triangle, carries the
+//! best fitting of a point-, line- or rectangle-swept sphere in f32, conservatively rounded; eight lanes
 //! are bounded at once. Triangles that survive are evaluated in f64, and that evaluation alone decides.
 //!
 //! Promised: the closest triangle is the one with the smallest computed squared distance, the lowest

@@ -44,12 +44,12 @@ impl Closest8 {
         Closest8 { ids: [f64::from(id); 8], ..Closest8::NONE }
     }
 
-    /// Offers the triangle at a position of the hierarchy's order to all points.
+    /// Offers the triangle at a slot of the hierarchy's order to all points.
     #[inline(always)]
-    pub fn offer_to_all<S: Simd>(&mut self, simd: S, tree: &Ssvh, position: u32, points: &[[f64; 8]; 3]) {
-        let triangle = tree.triangle_at(position).splat(simd);
+    pub fn offer_to_all<S: Simd>(&mut self, simd: S, tree: &Ssvh, slot: u32, points: &[[f64; 8]; 3]) {
+        let triangle = tree.triangle_at(slot).splat(simd);
         for vector in 0..8 / F64s::<S>::COUNT {
-            self.offer(simd, &triangle, tree.id_at(position), points, vector);
+            self.offer(simd, &triangle, tree.id_at(slot), points, vector);
         }
     }
 

@@ -8,16 +8,16 @@ use pulp::Simd;
 /// Children of a node.
 pub(super) const WIDTH: usize = 8;
 
-/// What the slots of a node stand for.
+/// What the lanes of a node stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Level {
     /// `children` are node numbers.
     Inner,
-    /// `children` are positions in the hierarchy's order of triangles.
+    /// `children` are slots in the hierarchy's order of triangles.
     Leaf,
 }
 
-/// Eight volumes as structure of arrays, coordinates relative to the hierarchy's centre. Slots from
+/// Eight volumes as structure of arrays, coordinates relative to the hierarchy's centre. Lanes from
 /// `count` on are empty.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
@@ -38,7 +38,7 @@ impl Node {
         u: [[0.0; WIDTH]; 3],
         v: [[0.0; WIDTH]; 3],
         half: [[0.0; WIDTH]; 2],
-        // Farther than anything: an empty slot is never looked at.
+        // Farther than anything: an empty lane is never looked at.
         radius: [f32::NEG_INFINITY; WIDTH],
         children: [u32::MAX; WIDTH],
         count: 0,
@@ -48,7 +48,7 @@ impl Node {
     /// Appends a child whose volume is `swept`, rounded to f32 and widened to enclose `spheres` again.
     /// Returns the volume as it is stored. Coordinates are relative to the hierarchy's centre.
     pub(super) fn push(&mut self, child: u32, swept: &Swept, spheres: &[Sphere]) -> Swept {
-        let slot = self.count as usize;
+        let lane = self.count as usize;
         let rounded = Swept {
             centre: swept.centre.as_vec3().as_dvec3(),
             u: swept.u.as_vec3().as_dvec3(),
@@ -59,32 +59,32 @@ impl Node {
         .with_radius_around(spheres);
         let radius = (rounded.radius as f32).next_up();
         for axis in 0..3 {
-            self.centre[axis][slot] = rounded.centre[axis] as f32;
-            self.u[axis][slot] = rounded.u[axis] as f32;
-            self.v[axis][slot] = rounded.v[axis] as f32;
+            self.centre[axis][lane] = rounded.centre[axis] as f32;
+            self.u[axis][lane] = rounded.u[axis] as f32;
+            self.v[axis][lane] = rounded.v[axis] as f32;
         }
-        self.half[0][slot] = rounded.half[0] as f32;
-        self.half[1][slot] = rounded.half[1] as f32;
-        self.radius[slot] = radius;
-        self.children[slot] = child;
+        self.half[0][lane] = rounded.half[0] as f32;
+        self.half[1][lane] = rounded.half[1] as f32;
+        self.radius[lane] = radius;
+        self.children[lane] = child;
         self.count += 1;
         Swept { radius: f64::from(radius), ..rounded }
     }
 
-    /// The volume in `slot`, relative to the hierarchy's centre.
-    pub(super) fn swept(&self, slot: usize) -> Swept {
+    /// The volume in `lane`, relative to the hierarchy's centre.
+    pub(super) fn swept(&self, lane: usize) -> Swept {
         let vector =
-            |a: &[[f32; WIDTH]; 3]| DVec3::from_array([0, 1, 2].map(|axis| f64::from(a[axis][slot])));
+            |a: &[[f32; WIDTH]; 3]| DVec3::from_array([0, 1, 2].map(|axis| f64::from(a[axis][lane])));
         Swept {
             centre: vector(&self.centre),
             u: vector(&self.u),
             v: vector(&self.v),
-            half: [f64::from(self.half[0][slot]), f64::from(self.half[1][slot])],
-            radius: f64::from(self.radius[slot]),
+            half: [f64::from(self.half[0][lane]), f64::from(self.half[1][lane])],
+            radius: f64::from(self.radius[lane]),
         }
     }
 
-    /// Per slot the distance of `q` (relative to the hierarchy's centre) from the volume, negative
+    /// Per lane the distance of `q` (relative to the hierarchy's centre) from the volume, negative
     /// inside, exact but for rounding of a few 2^-24 of the distances involved; infinite if empty.
     #[inline(always)]
     pub(super) fn distances<S: Simd>(&self, simd: S, q: Vec3) -> [f32; WIDTH] {
@@ -102,21 +102,21 @@ impl Node {
     }
 
     /// Whether one of eight points, as [`distances`](Self::distances) has it for one from eight volumes, is as near to the
-    /// volume in `slot` as its limit.
+    /// volume in `lane` as its limit.
     #[inline(always)]
     pub(super) fn is_near<S: Simd>(
         &self,
         simd: S,
-        slot: usize,
+        lane: usize,
         points: &[[f32; 8]; 3],
         limits: &[f32; 8],
     ) -> bool {
         let centre =
-            Vec3F32s::splat(simd, [self.centre[0][slot], self.centre[1][slot], self.centre[2][slot]]);
-        let u = Vec3F32s::splat(simd, [self.u[0][slot], self.u[1][slot], self.u[2][slot]]);
-        let v = Vec3F32s::splat(simd, [self.v[0][slot], self.v[1][slot], self.v[2][slot]]);
-        let half = [F32s::splat(simd, self.half[0][slot]), F32s::splat(simd, self.half[1][slot])];
-        let radius = F32s::splat(simd, self.radius[slot]);
+            Vec3F32s::splat(simd, [self.centre[0][lane], self.centre[1][lane], self.centre[2][lane]]);
+        let u = Vec3F32s::splat(simd, [self.u[0][lane], self.u[1][lane], self.u[2][lane]]);
+        let v = Vec3F32s::splat(simd, [self.v[0][lane], self.v[1][lane], self.v[2][lane]]);
+        let half = [F32s::splat(simd, self.half[0][lane]), F32s::splat(simd, self.half[1][lane])];
+        let radius = F32s::splat(simd, self.radius[lane]);
         let mut any = false;
         for vector in 0..8 / F32s::<S>::COUNT {
             let from = Vec3F32s::load(simd, points, vector) - centre;

@@ -40,7 +40,7 @@ impl Ssvh {
 
     /// The same as [`closest`](Self::closest), faster when `guess` is a triangle close to `p`.
     pub fn closest_from(&self, p: DVec3, guess: u32) -> Hit {
-        let distance_squared = self.triangles[self.position(guess)].distance_squared(p);
+        let distance_squared = self.triangles[self.slot(guess)].distance_squared(p);
         dispatch(Improve { tree: self, p, best: Hit { triangle: guess, distance_squared } })
     }
 
@@ -94,10 +94,10 @@ impl WithSimd for Improve<'_> {
                     stack.push(first, distance, child);
                     continue;
                 }
-                let position = child as usize;
+                let slot = child as usize;
                 let hit = Hit {
-                    triangle: tree.ids[position],
-                    distance_squared: tree.triangles[position].distance_squared(p),
+                    triangle: tree.ids[slot],
+                    distance_squared: tree.triangles[slot].distance_squared(p),
                 };
                 if hit.before(&best) {
                     best = hit;
@@ -131,7 +131,7 @@ impl WithSimd for Improve8<'_> {
         let around = Around::new(tree, points);
         let mut closest = Closest { tree, around: &around, nearest: Closest8::unless_nearer(guess) };
         let mut limits = [0.0; 8];
-        closest.visit(simd, tree.position(guess) as u32, &mut limits);
+        closest.visit(simd, tree.slot(guess) as u32, &mut limits);
         descend(simd, tree, &around, limits, &mut closest);
         closest.nearest.hits()
     }
@@ -146,8 +146,8 @@ struct Closest<'a> {
 
 impl Visit for Closest<'_> {
     #[inline(always)]
-    fn visit<S: Simd>(&mut self, simd: S, position: u32, limits: &mut [f32; 8]) -> bool {
-        self.nearest.offer_to_all(simd, self.tree, position, &self.around.exact);
+    fn visit<S: Simd>(&mut self, simd: S, slot: u32, limits: &mut [f32; 8]) -> bool {
+        self.nearest.offer_to_all(simd, self.tree, slot, &self.around.exact);
         self.nearest.limits(self.around.slack, limits);
         true
     }
@@ -155,9 +155,9 @@ impl Visit for Closest<'_> {
 
 /// What is done with the triangles that a descent for eight points comes to.
 pub(super) trait Visit {
-    /// Takes the triangle at a position of the hierarchy's order. May lower the limits, within which of each point triangles
+    /// Takes the triangle at a slot of the hierarchy's order. May lower the limits, within which of each point triangles
     /// matter. Returns whether to go on.
-    fn visit<S: Simd>(&mut self, simd: S, position: u32, limits: &mut [f32; 8]) -> bool;
+    fn visit<S: Simd>(&mut self, simd: S, slot: u32, limits: &mut [f32; 8]) -> bool;
 }
 
 /// Goes down to all triangles that can be within the limits of eight points. A volume matters when it is near enough to
@@ -175,14 +175,14 @@ pub(super) fn descend<S: Simd>(
     while let Some(node) = stack.pop(tree, limit) {
         let distances = node.distances(simd, around.centre);
         let first = stack.waiting;
-        for (slot, &distance) in distances.iter().enumerate() {
-            if distance > limit || !node.is_near(simd, slot, &around.relative, &limits) {
+        for (lane, &distance) in distances.iter().enumerate() {
+            if distance > limit || !node.is_near(simd, lane, &around.relative, &limits) {
                 continue;
             }
             match node.level {
-                Level::Inner => stack.push(first, distance, node.children[slot]),
+                Level::Inner => stack.push(first, distance, node.children[lane]),
                 Level::Leaf => {
-                    if !visitor.visit(simd, node.children[slot], &mut limits) {
+                    if !visitor.visit(simd, node.children[lane], &mut limits) {
                         return;
                     }
                     limit = largest(&limits) + around.radius;

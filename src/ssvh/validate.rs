@@ -7,12 +7,12 @@ use glam::DVec3;
 
 /// A volume that does not enclose a triangle below it.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("the volume of slot {slot} of node {node} misses triangle {triangle} by {by}")]
+#[error("the volume of lane {lane} of node {node} misses triangle {triangle} by {by}")]
 pub struct InvalidSsvh {
     /// Node number.
     pub node: usize,
     /// Slot in the node.
-    pub slot: usize,
+    pub lane: usize,
     /// Mesh triangle number.
     pub triangle: u32,
     /// The distance in model units.
@@ -41,13 +41,13 @@ impl Ssvh {
         seen: &mut [bool],
     ) -> Result<(), InvalidSsvh> {
         let n = &self.nodes[node];
-        for slot in 0..n.count as usize {
-            let child = n.children[slot] as usize;
-            let swept = n.swept(slot);
+        for lane in 0..n.count as usize {
+            let child = n.children[lane] as usize;
+            let swept = n.swept(lane);
             // Distances from a volume are distances only with orthonormal axes.
             let skew = swept.u.dot(swept.v).abs().max((swept.u.cross(swept.v).length() - 1.0).abs());
-            assert!(skew < 1e-6, "the axes of slot {slot} of node {node} are not orthonormal: {skew}");
-            above.push((node, slot, swept));
+            assert!(skew < 1e-6, "the axes of lane {lane} of node {node} are not orthonormal: {skew}");
+            above.push((node, lane, swept));
             match n.level {
                 Level::Inner => self.validate_below(child, above, seen)?,
                 Level::Leaf => {
@@ -69,10 +69,10 @@ impl Ssvh {
         above: &[(usize, usize, Swept)],
     ) -> Result<(), InvalidSsvh> {
         let allowed = 1e-6 * self.extent;
-        for &(node, slot, swept) in above {
+        for &(node, lane, swept) in above {
             let by = swept.core_distance(corner) - swept.radius;
             if by > allowed {
-                return Err(InvalidSsvh { node, slot, triangle, by });
+                return Err(InvalidSsvh { node, lane, triangle, by });
             }
         }
         Ok(())
