@@ -59,7 +59,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
         let mut work = Work { pruner, lists: &mut batch.lists, statistics, leaf: Leaf::new() };
         // Without signs, all distances are on one side.
         let side = if P::IS_SIGNED { self.side_around(block, distance) } else { Some(1.0) };
-        self.halves(0, block, side, &mut work);
+        self.octants(0, block, side, &mut work);
         let leaf = work.leaf;
         let outcome =
             if P::IS_SIGNED { leaf.finish(origin, batch) } else { leaf.finish_unsigned(origin, batch) };
@@ -75,28 +75,28 @@ impl<P: LeafPolicy> Worker<'_, P> {
         }
     }
 
-    /// Applies the octree filter to the eight halves of a block whose list has the given depth, and goes on with those
+    /// Applies the octree filter to the eight octants of a block whose list has the given depth, and goes on with those
     /// that it keeps. `side` is the sign of the distance in all of the block, where it is one.
-    fn halves(&self, depth: usize, block: Block, side: Option<f64>, work: &mut Work<'_>) {
+    fn octants(&self, depth: usize, block: Block, side: Option<f64>, work: &mut Work<'_>) {
         let lattice = self.filter.lattice;
-        let halves = block.children();
-        let middle = 0.5 * (halves[0].side - 1) as f32;
+        let octants = block.children();
+        let middle = 0.5 * (octants[0].side - 1) as f32;
         let mut centres = [[0.0; 8]; 3];
-        for (n, half) in halves.iter().enumerate() {
-            for (centre, node) in centres.iter_mut().zip(half.origin.0) {
+        for (n, octant) in octants.iter().enumerate() {
+            for (centre, node) in centres.iter_mut().zip(octant.origin.0) {
                 centre[n] = (node & (LEAF_DIM - 1)) as f32 + middle - CENTRE;
             }
         }
-        work.pruner.measure(depth, &centres, halves[0].side);
+        work.pruner.measure(depth, &centres, octants[0].side);
         // Where signs differ, they are those of the exact closest triangles.
         let exact = side.is_none().then(|| {
-            let points = halves.map(|half| half.centre(lattice));
+            let points = octants.map(|octant| octant.centre(lattice));
             let ssvh = self.filter.distance.ssvh();
             let hits = ssvh.closest8_among(work.pruner.list(depth), &points);
             let signed = |n: usize| self.filter.distance.from_triangle(points[n], hits[n].triangle).distance;
             std::array::from_fn::<f64, 8, _>(signed)
         });
-        for (n, half) in halves.into_iter().enumerate() {
+        for (n, octant) in octants.into_iter().enumerate() {
             let nearest = work.pruner.nearest(depth, n);
             let [distance, error] = [nearest.distance, nearest.error].map(|x| lattice.voxel * f64::from(x));
             let (signed, error) = match (&exact, side) {
@@ -105,33 +105,33 @@ impl<P: LeafPolicy> Worker<'_, P> {
                 (None, None) => unreachable!("one of them is known"),
             };
             let phi = signed - self.filter.r;
-            if self.filter.clearance(signed) > self.filter.reach(half) + error {
+            if self.filter.clearance(signed) > self.filter.reach(octant) + error {
                 work.statistics.octree_queries_invalid += 1;
-                work.leaf.fill(half, self.settings.background().copysign(phi as f32));
+                work.leaf.fill(octant, self.settings.background().copysign(phi as f32));
                 continue;
             }
             work.statistics.octree_queries_valid += 1;
-            let side = side.or_else(|| self.side_around(half, signed));
+            let side = side.or_else(|| self.side_around(octant, signed));
             work.pruner.prune(depth, n);
             work.statistics.lists[depth + 1] += work.pruner.count(depth + 1) as u64;
             let range = [distance - error, distance + error];
-            match self.state(depth + 1, centres.map(|c| c[n]), half, range, work.pruner) {
+            match self.state(depth + 1, centres.map(|c| c[n]), octant, range, work.pruner) {
                 Some(BlockState::Unwanted) => continue,
                 Some(BlockState::Inside) => {
-                    work.leaf.fill(half, -self.settings.background());
+                    work.leaf.fill(octant, -self.settings.background());
                     continue;
                 }
                 None => {}
             }
-            if half.side > 2 {
-                self.halves(depth + 1, half, side, work);
+            if octant.side > 2 {
+                self.octants(depth + 1, octant, side, work);
                 continue;
             }
-            let valid = self.nodes_by_list(n, &centres, half, side, work);
+            let valid = self.nodes_by_list(n, &centres, octant, side, work);
             // An edge that the surface crosses has valid ends; other blocks need no list.
             if valid > 0 || !P::IS_SIGNED {
                 let (slots, bounds) = work.pruner.bounded();
-                work.lists.push(half.origin, slots, bounds);
+                work.lists.push(octant.origin, slots, bounds);
             }
         }
     }
@@ -150,7 +150,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
         self.policy.decide(&BlockCandidates { pruner, depth, block, centre, lattice, ssvh, distance })
     }
 
-    /// Evaluates the eight nodes of a block of side 2, which was narrowed to last as half number `n` with one of `centres`,
+    /// Evaluates the eight nodes of a block of side 2, which was narrowed to last as octant `n` with one of `centres`,
     /// and returns how many of them are valid.
     fn nodes_by_list(
         &self,
