@@ -10,3 +10,4 @@ pub mod swept;
 pub mod sym3;
 pub mod triangle;
 pub mod triangle_pair;
+pub(crate) mod union_find;

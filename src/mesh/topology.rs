@@ -4,6 +4,7 @@
 
 use super::TriMesh;
 use crate::geom::triangle::Side;
+use crate::geom::union_find::UnionFind;
 use rayon::prelude::*;
 
 /// Rings of triangles around edges and vertices.
@@ -78,24 +79,13 @@ impl Topology {
         &self.vertex_triangles[self.vertex_start[v] as usize..self.vertex_start[v + 1] as usize]
     }
 
-    /// The number of connected components: sets of triangles joined by edges.
+    /// Returns the number of connected components: sets of triangles joined by edges.
     pub fn components(&self) -> usize {
         let triangles = self.next_around_edge.len() / 3;
-        let mut parent: Vec<u32> = (0..triangles as u32).collect();
-        fn root(parent: &mut [u32], mut t: u32) -> u32 {
-            while parent[t as usize] != t {
-                parent[t as usize] = parent[parent[t as usize] as usize];
-                t = parent[t as usize];
-            }
-            t
-        }
+        let mut sets = UnionFind::new(triangles as u32);
         let mut components = triangles;
-        for h in 0..self.next_around_edge.len() as u32 {
-            let (a, b) = (root(&mut parent, h / 3), root(&mut parent, self.next_around_edge[h as usize] / 3));
-            if a != b {
-                parent[a.max(b) as usize] = a.min(b);
-                components -= 1;
-            }
+        for (h, &next) in (0..).zip(&self.next_around_edge) {
+            components -= usize::from(sets.join(h / 3, next / 3));
         }
         components
     }
