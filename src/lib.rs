@@ -14,7 +14,7 @@ pub mod candidates;
 pub mod band;
 pub mod vdb;
 pub mod edge;
-pub mod unseen;
+pub mod subvoxel;
 pub mod contour;
 pub mod offset;
 pub mod verify;

@@ -82,7 +82,7 @@ fn little_memory(mesh: &TriMesh, settings: &OffsetSettings) -> u64 {
 fn assert_same(slabs: &OffsetResult, whole: &OffsetResult, what: &str) {
     let (s, w) = (&slabs.statistics, &whole.statistics);
     assert_eq!((s.filter, s.edges, s.contour), (w.filter, w.edges, w.contour), "{what}");
-    assert_eq!(s.unseen, w.unseen, "{what}");
+    assert_eq!(s.missed, w.missed, "{what}");
     assert_eq!((s.vdb.leaves, s.vdb.active_voxels), (w.vdb.leaves, w.vdb.active_voxels), "{what}");
     let (s, w) = (slabs.band.as_ref().map(content), whole.band.as_ref().map(content));
     assert!(s == w, "{what}: the bands differ");

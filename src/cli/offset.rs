@@ -40,7 +40,7 @@ pub(super) fn run(arguments: &OffsetArguments, session: &Session) -> Result<(), 
         session.warn(&format!("{triangles} could not be brought within the tolerance"));
     }
 
-    warn_of_unseen(&result.statistics, arguments.resolve, session);
+    warn_of_missed(&result.statistics, arguments.resolve, session);
 
     let (_, write) = session.phase(Phase::Write, || match (&arguments.more.vdb, &result.band) {
         (Some(path), Some(band)) => {
@@ -114,13 +114,13 @@ fn warn_of_input(arguments: &OffsetArguments, loaded: &Loaded, session: &Session
 }
 
 /// Says what the result lacks.
-fn warn_of_unseen(statistics: &OffsetStatistics, resolve: u32, session: &Session) {
-    let unseen = &statistics.unseen;
-    let Some(first) = unseen.places.first() else { return };
+fn warn_of_missed(statistics: &OffsetStatistics, resolve: u32, session: &Session) {
+    let missed = &statistics.missed;
+    let Some(first) = missed.features.first() else { return };
     let kinds = [
-        (unseen.sheets, "sheet", "sheets"),
-        (unseen.gaps, "gap", "gaps"),
-        (unseen.parts, "small part", "small parts"),
+        (missed.sheets, "sheet", "sheets"),
+        (missed.gaps, "gap", "gaps"),
+        (missed.parts, "small part", "small parts"),
     ];
     let kinds = kinds.into_iter().filter(|kind| kind.0 > 0).map(|(n, one, many)| counted(n, one, many));
     let [x, y, z] = first.at.map(short);

@@ -37,7 +37,7 @@ use crate::contour::SlabContour;
 use crate::distance::SignedDistance;
 use crate::mesh::{Topology, TriMesh};
 use crate::run::{Phase, RunSettings};
-use crate::unseen::Unseen;
+use crate::subvoxel::MissedFeatures;
 use crate::vdb::Band;
 use stages::on_slab;
 use std::time::Instant;
@@ -163,7 +163,7 @@ fn on_lattice(
     let Some((SlabContour { mesh, .. }, lost)) = done else {
         return Err(EmptyResult::explain(distance, band_settings, run)?.into());
     };
-    statistics.unseen = Unseen::new(lost);
+    statistics.missed = MissedFeatures::new(lost);
     statistics.slabs = 1;
     let band = stored.map(StoredBand::finish);
     statistics.set_memory(band.as_ref());

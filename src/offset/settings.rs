@@ -69,7 +69,7 @@ pub struct OffsetSettings {
     /// [`ContourStatistics::beyond_tolerance`](crate::contour::ContourStatistics).
     pub tolerance: Option<Tolerance>,
     /// How often the voxel size may be halved where the lattice does not see all of the surface
-    /// ([`Unseen`](crate::unseen::Unseen)); 0 leaves it as it is. The whole lattice is refined.
+    /// ([`MissedFeatures`](crate::subvoxel::MissedFeatures)); 0 leaves it as it is. The whole lattice is refined.
     pub resolve: u32,
     /// Refuse the lattice when the whole program would need more than about this many bytes; `None` for the memory
     /// that the system has available.

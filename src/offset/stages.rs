@@ -10,7 +10,7 @@ use crate::distance::SignedDistance;
 use crate::edge::{EdgeNumbers, EdgeSettings, RootMethod, solve_by};
 use crate::geom::aabb::Aabb;
 use crate::run::RunSettings;
-use crate::unseen::{self, Suspects};
+use crate::subvoxel::{self, MissedCandidates};
 use glam::DVec3;
 use std::time::Instant;
 
@@ -23,7 +23,7 @@ pub(super) fn on_slab(
     stored: Option<&mut StoredBand>,
     statistics: &mut OffsetStatistics,
     run: &RunSettings,
-) -> Result<Option<(SlabContour, Suspects)>, OffsetError> {
+) -> Result<Option<(SlabContour, MissedCandidates)>, OffsetError> {
     let BandSettings { lattice, r, slab, .. } = *band_settings;
     let store = stored.map(|stored| -> &mut (dyn BandStore<OffsetError> + Send) { stored });
     let started = Instant::now();
@@ -39,7 +39,7 @@ pub(super) fn on_slab(
     let edge_settings = EdgeSettings { lattice, r, method: RootMethod::TriangleIteration, slab };
     let (crossings, edges) = solve_by(distance, &edge_settings, &signs, numbers, &near, run)?;
     statistics.edges += edges;
-    let suspects = unseen::suspects(distance, r, lattice, slab, &signs, &near, run)?;
+    let suspects = subvoxel::find_missed(distance, r, lattice, slab, &signs, &near, run)?;
     let NearTriangles { nodes, lists } = near;
     drop(nodes);
     statistics.times.edges += started.elapsed().as_secs_f64();
@@ -53,7 +53,7 @@ pub(super) fn on_slab(
     let contour = run.install(|| contour.into_ordered());
     let triangles = contour.firsts.windows(2).map(|ends| ends[0]..ends[1]);
     let leaves = signs.leaves().map(|leaf| signs.origin(leaf)).zip(triangles);
-    let lost = unseen::lost(suspects, &contour.mesh, leaves, STRAY, run)?;
+    let lost = subvoxel::confirm_missed(suspects, &contour.mesh, leaves, STRAY, run)?;
     statistics.contour += contour.statistics;
     statistics.times.contour += started.elapsed().as_secs_f64();
     Ok(Some((contour, lost)))

@@ -5,7 +5,7 @@ use crate::band::{BandSettings, LoneNodes};
 use crate::contour::ContourStatistics;
 use crate::edge::EdgeStatistics;
 use crate::filter::FilterStatistics;
-use crate::unseen::Unseen;
+use crate::subvoxel::MissedFeatures;
 use crate::vdb::Band;
 use serde::Serialize;
 
@@ -26,8 +26,9 @@ pub struct OffsetStatistics {
     pub contour: ContourStatistics,
     /// Nodes without a neighbour on their side of the surface.
     pub lone_nodes: LoneNodes,
-    /// What the lattice could not see.
-    pub unseen: Unseen,
+    /// Features of the offset solid that the lattice is too coarse for.
+    #[serde(rename = "unseen")]
+    pub missed: MissedFeatures,
     /// Slabs that were worked off one after the other.
     pub slabs: usize,
     /// How often the voxel size was halved to see more.

@@ -11,7 +11,7 @@ use crate::contour::{SlabContour, halo};
 use crate::lattice::Slab;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};
-use crate::unseen::{Suspects, Unseen};
+use crate::subvoxel::{MissedCandidates, MissedFeatures};
 use std::time::Instant;
 
 /// How the lattice is cut.
@@ -75,7 +75,7 @@ pub fn offset_in_slabs(
             let started = Instant::now();
             let slabs = cut_slabs(prepared, band_settings, cut)?;
             statistics.times.band += started.elapsed().as_secs_f64();
-            let mut lost = Suspects::default();
+            let mut lost = MissedCandidates::default();
             let mut is_empty = true;
             for &slab in &slabs {
                 let band_settings = BandSettings { slab, ..*band_settings };
@@ -91,7 +91,7 @@ pub fn offset_in_slabs(
                 return Err(EmptyResult::explain(distance, band_settings, run)?.into());
             }
             statistics.slabs = slabs.len();
-            statistics.unseen = Unseen::new(lost);
+            statistics.missed = MissedFeatures::new(lost);
             let band = stored.map(StoredBand::finish);
             statistics.set_memory(band.as_ref());
             Ok(OffsetResult { mesh: TriMesh::default(), band, statistics })

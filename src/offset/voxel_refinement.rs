@@ -17,7 +17,7 @@ pub(super) fn until_seen(
         let result = on_lattice(&band_settings, times);
         let finer = finer(prepared, &band_settings).filter(|f| halvings < settings.resolve && fits(f));
         match (result, finer) {
-            (Ok(result), Some(finer)) if result.statistics.unseen.count() > 0 => {
+            (Ok(result), Some(finer)) if result.statistics.missed.count() > 0 => {
                 times = result.statistics.times;
                 band_settings = finer;
             }

@@ -1,6 +1,9 @@
-//! Which suspects the finished mesh knows: tips of creases beyond the cells that see them are recovered afterwards.
+//! Confirms candidates against the finished mesh.
+//!
+//! Tips of creases beyond the cells that see them are recovered after the search, so some candidates are
+//! on the right side of the mesh in the end.
 
-use super::suspects::{Hidden, Suspect, Suspects};
+use super::search::{Missed, MissedCandidate, MissedCandidates};
 use crate::geom::triangle::Triangle;
 use crate::lattice::{Ijk, LEAF_DIM, Lattice, LeafIndex};
 use crate::mesh::TriMesh;
@@ -9,57 +12,60 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// A suspect that is on the wrong side of the mesh by less than this, in voxels, is part of its error.
-pub(super) const DEEP: f64 = 0.05;
+/// Depth on the wrong side of the mesh, in voxels, up to which a candidate is part of the mesh's error.
+pub(super) const MIN_DEPTH: f64 = 0.05;
 
-/// Triangles farther than this from a suspect, in voxels, say nothing of it: the nodes around it do.
-const REACH: f64 = 2.0;
+/// Largest distance, in voxels, of a triangle that decides about a candidate. Where no triangle is that
+/// near, the nodes around the candidate decide.
+const MAX_DISTANCE: f64 = 2.0;
 
-/// Keeps the suspects that `mesh`, the result or the part of it around them, has on the wrong side. `leaves` gives the
-/// numbers of its triangles by the origin of their leaf, beyond which they reach by at most `stray` voxels.
+/// Keeps the candidates that are on the wrong side of `mesh`.
+///
+/// `mesh` is the result, or the part of it around the candidates. `leaves` gives the range of its
+/// triangles by the origin of their leaf; a triangle reaches at most `stray` voxels beyond its leaf.
 ///
 /// # Errors
 /// When the run is cancelled.
-pub fn lost(
-    suspects: Suspects,
+pub fn confirm_missed(
+    candidates: MissedCandidates,
     mesh: &TriMesh,
     leaves: impl Iterator<Item = (Ijk, Range<usize>)>,
     stray: f64,
     run: &RunSettings,
-) -> Result<Suspects, Cancelled> {
-    let Suspects { all, lattice: Some(lattice) } = suspects else { return Ok(suspects) };
+) -> Result<MissedCandidates, Cancelled> {
+    let MissedCandidates { all, lattice: Some(lattice) } = candidates else { return Ok(candidates) };
     if all.is_empty() {
-        return Ok(Suspects { all, lattice: Some(lattice) });
+        return Ok(MissedCandidates { all, lattice: Some(lattice) });
     }
     let near = NearMesh::new(&all, lattice);
     let around = LeafIndex::new(&around(&all, lattice, stray));
     let leaves: Vec<_> = leaves.filter(|(origin, _)| around.get(*origin).is_some()).collect();
-    let seen = run.install(|| near.look(mesh, &leaves, run))?;
-    let lost = all.iter().zip(seen).filter(|(suspect, nearest)| nearest.is_lost(suspect, lattice));
-    Ok(Suspects { all: lost.map(|(suspect, _)| *suspect).collect(), lattice: Some(lattice) })
+    let nearest = run.install(|| near.look(mesh, &leaves, run))?;
+    let missed = all.iter().zip(nearest).filter(|(candidate, nearest)| nearest.is_missed(candidate, lattice));
+    Ok(MissedCandidates { all: missed.map(|(candidate, _)| *candidate).collect(), lattice: Some(lattice) })
 }
 
-/// The nearest triangle of the mesh to a suspect.
+/// The triangle of the mesh that is nearest to a candidate.
 #[derive(Clone, Copy)]
 struct Nearest {
     distance: f64,
-    /// The cosine between its normal and the way to the suspect. Of triangles that meet in the closest point, the one
-    /// that looks most at the suspect knows its side.
+    /// Cosine between the triangle's normal and the way to the candidate. Of triangles that meet in the
+    /// closest point, the one with the largest cosine in size knows the candidate's side.
     cosine: f64,
 }
 
 impl Nearest {
     const NONE: Nearest = Nearest { distance: f64::INFINITY, cosine: 0.0 };
 
-    fn is_lost(&self, suspect: &Suspect, lattice: Lattice) -> bool {
-        if self.distance > REACH * lattice.voxel {
+    fn is_missed(&self, candidate: &MissedCandidate, lattice: Lattice) -> bool {
+        if self.distance > MAX_DISTANCE * lattice.voxel {
             return true;
         }
-        let is_wrong = match suspect.hidden {
-            Hidden::Solid => self.cosine > 0.0,
-            Hidden::Air => self.cosine < 0.0,
+        let is_wrong = match candidate.missed {
+            Missed::Solid => self.cosine > 0.0,
+            Missed::Void => self.cosine < 0.0,
         };
-        is_wrong && self.distance > DEEP * lattice.voxel
+        is_wrong && self.distance > MIN_DEPTH * lattice.voxel
     }
 
     fn nearer(self, other: Nearest, slack: f64) -> Nearest {
@@ -72,28 +78,28 @@ impl Nearest {
     }
 }
 
-/// The suspects by leaf of their cells.
+/// The candidates, by the leaf of their cells.
 struct NearMesh<'a> {
-    suspects: &'a [Suspect],
+    candidates: &'a [MissedCandidate],
     lattice: Lattice,
     index: LeafIndex,
     by_leaf: Vec<Vec<u32>>,
 }
 
 impl<'a> NearMesh<'a> {
-    fn new(suspects: &'a [Suspect], lattice: Lattice) -> NearMesh<'a> {
-        let mut origins: Vec<Ijk> = suspects.iter().map(|s| s.cell.leaf_origin()).collect();
+    fn new(candidates: &'a [MissedCandidate], lattice: Lattice) -> NearMesh<'a> {
+        let mut origins: Vec<Ijk> = candidates.iter().map(|s| s.cell.leaf_origin()).collect();
         origins.sort_unstable();
         origins.dedup();
         let index = LeafIndex::new(&origins);
         let mut by_leaf = vec![Vec::new(); origins.len()];
-        for (suspect, n) in suspects.iter().zip(0..) {
-            by_leaf[index.get(suspect.cell).expect("its own leaf")].push(n);
+        for (candidate, n) in candidates.iter().zip(0..) {
+            by_leaf[index.get(candidate.cell).expect("its own leaf")].push(n);
         }
-        NearMesh { suspects, lattice, index, by_leaf }
+        NearMesh { candidates, lattice, index, by_leaf }
     }
 
-    /// The nearest triangle within reach of each suspect, of those of some leaves.
+    /// Returns the nearest triangle to each candidate, of the triangles of `leaves`.
     fn look(
         &self,
         mesh: &TriMesh,
@@ -114,22 +120,22 @@ impl<'a> NearMesh<'a> {
                 Ok(pairs)
             })
             .collect::<Result<_, Cancelled>>()?;
-        let mut nearest = vec![Nearest::NONE; self.suspects.len()];
+        let mut nearest = vec![Nearest::NONE; self.candidates.len()];
         let slack = 1e-6 * self.lattice.voxel;
-        for (suspect, found) in pairs.into_iter().flatten() {
-            let own = &mut nearest[suspect as usize];
+        for (candidate, found) in pairs.into_iter().flatten() {
+            let own = &mut nearest[candidate as usize];
             *own = own.nearer(found, slack);
         }
         Ok(nearest)
     }
 
     fn triangle(&self, corners: [DVec3; 3], vertices: [u32; 3], pairs: &mut Vec<(u32, Nearest)>) {
-        let reach = REACH * self.lattice.voxel;
+        let margin = MAX_DISTANCE * self.lattice.voxel;
         let [a, b, c] = corners;
-        let (lo, hi) = (a.min(b).min(c) - reach, a.max(b).max(c) + reach);
+        let (lo, hi) = (a.min(b).min(c) - margin, a.max(b).max(c) + margin);
         for leaf in leaves_between(lo, hi, self.lattice).filter_map(|leaf| self.index.get(leaf)) {
             for &n in &self.by_leaf[leaf] {
-                let p = self.suspects[n as usize].at;
+                let p = self.candidates[n as usize].at;
                 if p.cmplt(lo).any() || p.cmpgt(hi).any() {
                     continue;
                 }
@@ -143,23 +149,23 @@ impl<'a> NearMesh<'a> {
     }
 }
 
-/// The leaves whose triangles can be within reach of suspects, ascending.
-fn around(suspects: &[Suspect], lattice: Lattice, stray: f64) -> Vec<Ijk> {
-    // And a voxel, for rounding.
-    let margin = (REACH + stray + 1.0) * lattice.voxel;
-    let of = |s: &Suspect| leaves_between(s.at - margin, s.at + margin, lattice);
-    let mut leaves: Vec<Ijk> = suspects.iter().flat_map(of).collect();
+/// Returns the leaves whose triangles can be near enough to a candidate, ascending.
+fn around(candidates: &[MissedCandidate], lattice: Lattice, stray: f64) -> Vec<Ijk> {
+    // One more voxel for rounding.
+    let margin = (MAX_DISTANCE + stray + 1.0) * lattice.voxel;
+    let of = |s: &MissedCandidate| leaves_between(s.at - margin, s.at + margin, lattice);
+    let mut leaves: Vec<Ijk> = candidates.iter().flat_map(of).collect();
     leaves.sort_unstable();
     leaves.dedup();
     leaves
 }
 
-/// The origin of the leaf that a point lies in.
+/// Returns the origin of the leaf that holds a point.
 fn leaf_at(p: DVec3, lattice: Lattice) -> Ijk {
     Ijk((p / lattice.voxel).floor().as_ivec3().to_array()).leaf_origin()
 }
 
-/// The origins of the leaves that the box from `lo` to `hi` touches, z fastest.
+/// Returns the origins of the leaves that the box from `lo` to `hi` touches, z fastest.
 fn leaves_between(lo: DVec3, hi: DVec3, lattice: Lattice) -> impl Iterator<Item = Ijk> {
     let (first, last) = (leaf_at(lo, lattice).0, leaf_at(hi, lattice).0);
     let along = move |axis: usize| (first[axis]..=last[axis]).step_by(LEAF_DIM as usize);

@@ -40,14 +40,14 @@ fn slabs(gap: f64, z: f64) -> TriMesh {
 fn a_gap_between_nodes_is_found() {
     for z in [0.03, 0.05, 0.07, -1.34] {
         // What is left of the gap is 0.3 voxels wide.
-        let unseen = run(&slabs(0.43, z), 0.2, 0).statistics.unseen;
-        assert!(unseen.gaps == 1 && unseen.sheets == 0, "{z}: {unseen:?}");
-        let place = &unseen.places[0];
-        assert_eq!(place.kind, UnseenKind::Gap);
+        let missed = run(&slabs(0.43, z), 0.2, 0).statistics.missed;
+        assert!(missed.gaps == 1 && missed.sheets == 0, "{z}: {missed:?}");
+        let feature = &missed.features[0];
+        assert_eq!(feature.kind, MissedKind::Gap);
         // It widens towards the rounded rims.
-        assert!((place.at[2] - z).abs() < 0.02 && (0.14..0.5).contains(&place.depth), "{z}: {place:?}");
-        let [lo, hi] = place.bbox;
-        assert!(hi[0] - lo[0] > 1.2 && hi[1] - lo[1] > 1.0, "{place:?}");
+        assert!((feature.at[2] - z).abs() < 0.02 && (0.14..0.5).contains(&feature.depth), "{z}: {feature:?}");
+        let [lo, hi] = feature.bbox;
+        assert!(hi[0] - lo[0] > 1.2 && hi[1] - lo[1] > 1.0, "{feature:?}");
     }
 }
 
@@ -59,9 +59,9 @@ fn a_sheet_between_nodes_is_found() {
             [[-3.0, -0.6, -0.6], [-1.0, 0.6, 0.6]],
             [[-0.7, -0.6, z - 0.215], [0.7, 0.6, z + 0.215]],
         ]);
-        let unseen = run(&mesh, -0.2, 0).statistics.unseen;
-        assert!(unseen.sheets == 1 && unseen.gaps == 0, "{z}: {unseen:?}");
-        assert!((unseen.places[0].at[2] - z).abs() < 0.015, "{unseen:?}");
+        let missed = run(&mesh, -0.2, 0).statistics.missed;
+        assert!(missed.sheets == 1 && missed.gaps == 0, "{z}: {missed:?}");
+        assert!((missed.features[0].at[2] - z).abs() < 0.015, "{missed:?}");
     }
 }
 
@@ -71,9 +71,9 @@ fn a_part_in_a_cell_is_found() {
         let half = 0.025;
         let small = [centre.map(|x| x - half), centre.map(|x| x + half)];
         let mesh = boxes(&[[[-0.6; 3], [0.6; 3]], small]);
-        let unseen = run(&mesh, 0.0, 0).statistics.unseen;
-        assert_eq!((unseen.parts, unseen.count()), (1, 1), "{centre:?}: {unseen:?}");
-        let at = unseen.places[0].at;
+        let missed = run(&mesh, 0.0, 0).statistics.missed;
+        assert_eq!((missed.parts, missed.count()), (1, 1), "{centre:?}: {missed:?}");
+        let at = missed.features[0].at;
         assert!((0..3).all(|a| (at[a] - centre[a]).abs() < half), "{at:?} {centre:?}");
     }
 }
@@ -84,15 +84,15 @@ fn what_is_seen_is_not_reported() {
     let torus = (shapes::by_name("torus").unwrap().make)(12);
     for mesh in [&sphere, &torus, &slabs(0.9, 0.05)] {
         for r in [0.2, 0.07, 0.0] {
-            let unseen = run(mesh, r, 0).statistics.unseen;
-            assert_eq!(unseen, Unseen::default(), "{r}");
+            let missed = run(mesh, r, 0).statistics.missed;
+            assert_eq!(missed, MissedFeatures::default(), "{r}");
         }
     }
 }
 
-/// Each place against the true distance and against the result.
+/// Each feature against the true distance and against the result.
 #[test]
-fn every_place_is_on_the_wrong_side() {
+fn every_feature_is_on_the_wrong_side() {
     let mut checked = 0;
     for (name, detail) in
         [("carved_cube", 10), ("fin", 6), ("near_spheres", 12), ("flower", 8), ("bracket", 6)]
@@ -111,12 +111,12 @@ fn every_place_is_on_the_wrong_side() {
             };
             let result_topology = Topology::new(&result.mesh);
             let made = SignedDistance::new(&result.mesh, &result_topology);
-            for place in &result.statistics.unseen.places {
+            for feature in &result.statistics.missed.features {
                 let [true_phi, made_phi] =
-                    [truth.at(place.at.into(), 0).distance - r, made.at(place.at.into(), 0).distance];
-                assert!(true_phi * made_phi < 0.0, "{name} {r}: {place:?} {true_phi} {made_phi}");
-                assert!(made_phi.abs() > 0.04 * VOXEL, "{name} {r}: {place:?} {made_phi}");
-                assert!((true_phi.abs() / VOXEL - place.depth).abs() < 1e-6);
+                    [truth.at(feature.at.into(), 0).distance - r, made.at(feature.at.into(), 0).distance];
+                assert!(true_phi * made_phi < 0.0, "{name} {r}: {feature:?} {true_phi} {made_phi}");
+                assert!(made_phi.abs() > 0.04 * VOXEL, "{name} {r}: {feature:?} {made_phi}");
+                assert!((true_phi.abs() / VOXEL - feature.depth).abs() < 1e-6);
                 checked += 1;
             }
         }
@@ -133,7 +133,7 @@ fn threads_do_not_matter() {
         ..OffsetSettings::default()
     };
     let [one, two] = [1, 2].map(|threads| {
-        offset(&mesh, &settings, &RunSettings::with_threads(threads).unwrap()).unwrap().statistics.unseen
+        offset(&mesh, &settings, &RunSettings::with_threads(threads).unwrap()).unwrap().statistics.missed
     });
     assert_eq!(one, two);
 }
@@ -142,9 +142,9 @@ fn threads_do_not_matter() {
 fn resolving_brings_it_back() {
     let mesh = slabs(0.43, 0.05);
     let [coarse, fine] = [0, 3].map(|resolve| run(&mesh, 0.2, resolve));
-    assert_eq!((coarse.statistics.halvings, coarse.statistics.unseen.gaps), (0, 1));
+    assert_eq!((coarse.statistics.halvings, coarse.statistics.missed.gaps), (0, 1));
     assert!((1..=3).contains(&fine.statistics.halvings), "{}", fine.statistics.halvings);
-    assert_eq!(fine.statistics.unseen, Unseen::default());
+    assert_eq!(fine.statistics.missed, MissedFeatures::default());
     assert_eq!(fine.statistics.voxel, VOXEL * 0.5f64.powi(fine.statistics.halvings as i32));
     let components = |result: &OffsetResult| Topology::new(&result.mesh).components();
     assert_eq!((components(&coarse), components(&fine)), (1, 2));

@@ -1,16 +1,17 @@
-//! Directions, coarsely: which triangles face away from each other.
+//! Coarse directions of triangles, to find those that face away from each other.
 
 use crate::ssvh::Ssvh;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Coordinates of a unit vector within this of zero count as zero. It makes the 26 directions about equally likely.
+/// Size of a unit vector's coordinate up to which it counts as zero. This value makes the 26 directions
+/// about equally likely.
 const FLAT: f64 = 0.4;
 
 /// A set of directions, a bit for each of 3^3.
 pub(super) type Directions = u32;
 
-/// The direction of each triangle of a mesh, and which directions face away from which.
+/// The direction of each triangle of a mesh, and the directions that face away from each.
 pub(super) struct DirectionTable {
     by_triangle: Vec<u8>,
     away: [Directions; 27],
@@ -26,13 +27,13 @@ impl DirectionTable {
         DirectionTable { by_triangle, away }
     }
 
-    /// The direction of a triangle, as a set.
+    /// Returns the direction of a triangle, as a set of one.
     #[inline]
     pub(super) fn of(&self, triangle: u32) -> Directions {
         1 << self.by_triangle[triangle as usize]
     }
 
-    /// The directions of triangles.
+    /// Returns the set of the directions of some triangles.
     pub(super) fn of_all(&self, triangles: &[u32]) -> Directions {
         triangles.iter().fold(0, |all, &triangle| all | self.of(triangle))
     }
@@ -56,7 +57,8 @@ fn direction(normal: DVec3) -> u8 {
     9 * digit(normal.x) + 3 * digit(normal.y) + digit(normal.z)
 }
 
-/// The middle of a direction. A triangle without a normal has one that is at a right angle to all.
+/// Returns the vector in the middle of a direction. The direction of a triangle without a normal is at
+/// a right angle to all others.
 fn vector(direction: usize) -> DVec3 {
     DVec3::new((direction / 9) as f64, (direction / 3 % 3) as f64, (direction % 3) as f64) - 1.0
 }

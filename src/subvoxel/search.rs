@@ -1,4 +1,4 @@
-//! Points between nodes of one sign that have the other one.
+//! Searches for points of one sign between nodes of the other sign.
 
 use super::directions::{DirectionTable, Directions};
 use crate::band::{LeafId, NearTriangles, SignField};
@@ -9,68 +9,71 @@ use crate::run::{Cancelled, RunSettings, SHARE};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// What is hidden at a point.
+/// The side of the surface on which a point is missed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Hidden {
-    /// A piece of the offset solid among outside nodes.
+pub(super) enum Missed {
+    /// The point is in the offset solid, among outside nodes.
     Solid,
-    /// A piece of what is around it among inside nodes.
-    Air,
+    /// The point is outside the offset solid, among inside nodes.
+    Void,
 }
 
-/// Where a point was found.
+/// The part of a cell in which a point was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Found {
-    /// On an edge that the surface crosses twice.
+    /// An edge that the surface crosses twice.
     OnEdge,
-    /// In a cell with corners of one sign.
+    /// The interior of a cell with corners of one sign.
     InCell,
 }
 
 /// A point whose sign differs from that of the nodes around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Suspect {
+pub(super) struct MissedCandidate {
     pub(super) cell: Ijk,
     pub(super) at: DVec3,
-    pub(super) hidden: Hidden,
+    pub(super) missed: Missed,
     pub(super) found: Found,
-    /// How far it is from the surface, in voxels.
+    /// Distance from the surface, in voxels.
     pub(super) depth: f64,
 }
 
 /// Points that the contour may not know of.
 #[derive(Clone, Debug, Default)]
-pub struct Suspects {
-    pub(super) all: Vec<Suspect>,
+pub struct MissedCandidates {
+    pub(super) all: Vec<MissedCandidate>,
     pub(super) lattice: Option<Lattice>,
 }
 
-impl Suspects {
-    /// Adds those of the next slab.
-    pub fn append(&mut self, mut other: Suspects) {
+impl MissedCandidates {
+    /// Adds the candidates of the next slab.
+    pub fn append(&mut self, mut other: MissedCandidates) {
         self.all.append(&mut other.all);
         self.lattice = self.lattice.or(other.lattice);
     }
 }
 
-/// Questions along one edge: a gap between plane walls takes one, round ones two or three.
-const ALONG_EDGE: usize = 6;
+/// The most distance queries along one edge. A gap between plane walls takes one, one between round
+/// walls two or three.
+const MAX_QUERIES_ON_EDGE: usize = 6;
 
-/// Questions in one cell.
-const IN_CELL: usize = 6;
+/// The most distance queries in one cell.
+const MAX_QUERIES_IN_CELL: usize = 6;
 
-/// Known corners of a cell that is searched: fewer do not tell that there is something between them.
-const KNOWN: usize = 4;
+/// The fewest corners with known distances of a cell that is searched. Fewer do not tell that there is
+/// something between them.
+const MIN_KNOWN: usize = 4;
 
-/// Points nearer to the surface than this, in voxels, do not count: rounding.
+/// Depth, in voxels, up to which a point does not count: rounding.
 const NEGLIGIBLE: f64 = 1e-3;
 
-/// Looks for points between the nodes of `signs` that have the other sign. `near` has the closest triangles of the nodes.
-/// What belongs to other slabs is left to them.
+/// Finds points between the nodes of `signs` that have the other sign.
+///
+/// `near` has the closest triangles of the nodes. Leaves that other slabs own are left to them.
 ///
 /// # Errors
 /// When the run is cancelled.
-pub fn suspects(
+pub fn find_missed(
     distance: &SignedDistance,
     r: f64,
     lattice: Lattice,
@@ -78,7 +81,7 @@ pub fn suspects(
     signs: &SignField,
     near: &NearTriangles,
     run: &RunSettings,
-) -> Result<Suspects, Cancelled> {
+) -> Result<MissedCandidates, Cancelled> {
     let directions = DirectionTable::new(distance.ssvh(), distance.mesh().triangles.len());
     let by_leaf = run.install(|| {
         let of_leaf = |leaf| near.nodes.of_leaf(leaf).map_or(0, |of| directions.of_all(of.known()));
@@ -86,7 +89,7 @@ pub fn suspects(
     });
     let search = Search { distance, r, lattice, signs, near, directions, by_leaf };
     let leaves: Vec<LeafId> = signs.leaves().filter(|&leaf| slab.owns(signs.origin(leaf))).collect();
-    let all: Vec<Vec<Suspect>> = run.install(|| {
+    let all: Vec<Vec<MissedCandidate>> = run.install(|| {
         leaves
             .par_iter()
             .with_min_len(16)
@@ -97,13 +100,13 @@ pub fn suspects(
             })
             .collect::<Result<_, Cancelled>>()
     })?;
-    Ok(Suspects { all: all.into_iter().flatten().collect(), lattice: Some(lattice) })
+    Ok(MissedCandidates { all: all.into_iter().flatten().collect(), lattice: Some(lattice) })
 }
 
-/// Nodes along the side of a leaf's cells.
+/// Nodes along one axis of a leaf's cells.
 const SIDE: usize = LEAF_DIM as usize + 1;
 
-/// The corners of a leaf's cells.
+/// The number of corners of a leaf's cells.
 const NODES: usize = SIDE * SIDE * SIDE;
 
 struct Search<'a> {
@@ -121,14 +124,14 @@ struct Search<'a> {
 #[derive(Clone, Copy)]
 struct Corner {
     p: DVec3,
-    /// Towards zero from either side: positive, in model units.
+    /// Distance from the surface, in model units: positive on the side that the nodes are on.
     height: f64,
     gradient: DVec3,
     triangle: u32,
 }
 
 impl Search<'_> {
-    fn leaf(&self, leaf: LeafId) -> Vec<Suspect> {
+    fn leaf(&self, leaf: LeafId) -> Vec<MissedCandidate> {
         let mut found = Vec::new();
         let around: [Option<LeafId>; 8] = std::array::from_fn(|n| {
             self.signs.neighbour(leaf, [n >> 2 & 1, n >> 1 & 1, n & 1].map(|d| d as i32))
@@ -156,8 +159,8 @@ impl Search<'_> {
         found
     }
 
-    /// The closest triangles of the nodes of a leaf and of the next ones along each axis, -1 where none is known, and their
-    /// directions. `around` is the leaf and the next ones, z fastest.
+    /// Returns the closest triangles of the corners of a leaf's cells, -1 where none is known, and the
+    /// directions of these triangles. `around` is the leaf and the next ones, z fastest.
     fn corners(&self, around: [Option<LeafId>; 8]) -> ([i32; NODES], [Directions; NODES]) {
         let ids = around.map(|leaf| self.near.nodes.of_leaf(leaf?));
         // All of the leaf itself, and of the next ones the first layers only.
@@ -183,8 +186,9 @@ impl Search<'_> {
         (triangles, sets)
     }
 
-    /// Searches the three edges that start at a cell's lowest node, and the cell itself if its corners have one sign.
-    fn cell(&self, leaf: LeafId, number: usize, triangles: [i32; 8], found: &mut Vec<Suspect>) {
+    /// Searches the three edges that start at a cell's lowest node. Searches the cell itself if its corners
+    /// have one sign.
+    fn cell(&self, leaf: LeafId, number: usize, triangles: [i32; 8], found: &mut Vec<MissedCandidate>) {
         let local = Ijk::in_leaf(Ijk::default(), number);
         let cell = self.signs.origin(leaf) + local;
         let is_inside = |corner: usize| {
@@ -198,57 +202,54 @@ impl Search<'_> {
             let offset = Ijk([n >> 2, n >> 1 & 1, n & 1].map(|x| x as i32));
             let p = DVec3::from(self.lattice.world_from_index(cell + offset));
             let sample = self.distance.from_triangle(p, triangle);
-            Some(self.corner(p, &sample, if inside[n]? { Hidden::Air } else { Hidden::Solid }))
+            Some(self.corner(p, &sample, if inside[n]? { Missed::Void } else { Missed::Solid }))
         });
         for (axis, other) in [(Axis::X, 4), (Axis::Y, 2), (Axis::Z, 1)] {
             let (Some(a), Some(b)) = (corners[0], corners[other]) else { continue };
             if inside[0] != inside[other] {
                 continue;
             }
-            let hidden = if inside[0] == Some(true) { Hidden::Air } else { Hidden::Solid };
-            if let Some((at, depth)) = self.edge(a, b, axis, hidden) {
-                found.push(Suspect { cell, at, hidden, found: Found::OnEdge, depth });
+            let missed = if inside[0] == Some(true) { Missed::Void } else { Missed::Solid };
+            if let Some((at, depth)) = self.edge(a, b, axis, missed) {
+                found.push(MissedCandidate { cell, at, missed, found: Found::OnEdge, depth });
             }
         }
         let known = corners.iter().flatten().count();
-        let hidden = match inside[0] {
-            Some(side) if known >= KNOWN && inside.iter().all(|other| *other == Some(side)) => {
-                if side {
-                    Hidden::Air
-                } else {
-                    Hidden::Solid
+        let missed =
+            match inside[0] {
+                Some(side) if known >= MIN_KNOWN && inside.iter().all(|other| *other == Some(side)) => {
+                    if side { Missed::Void } else { Missed::Solid }
                 }
-            }
-            _ => return,
-        };
-        if let Some((at, depth)) = self.inside_cell(cell, &corners, hidden) {
-            found.push(Suspect { cell, at, hidden, found: Found::InCell, depth });
+                _ => return,
+            };
+        if let Some((at, depth)) = self.inside_cell(cell, &corners, missed) {
+            found.push(MissedCandidate { cell, at, missed, found: Found::InCell, depth });
         }
     }
 
-    fn corner(&self, p: DVec3, sample: &Sample, hidden: Hidden) -> Corner {
+    fn corner(&self, p: DVec3, sample: &Sample, missed: Missed) -> Corner {
         let phi = sample.distance - self.r;
         let gradient = self.distance.gradient(p, sample, 1e-4 * self.lattice.voxel);
-        let sign = match hidden {
-            Hidden::Solid => 1.0,
-            Hidden::Air => -1.0,
+        let sign = match missed {
+            Missed::Solid => 1.0,
+            Missed::Void => -1.0,
         };
         Corner { p, height: sign * phi, gradient: sign * gradient, triangle: sample.triangle }
     }
 
-    fn ask(&self, p: DVec3, guess: u32, hidden: Hidden) -> Corner {
+    fn sample(&self, p: DVec3, guess: u32, missed: Missed) -> Corner {
         let near = self.near.lists.as_ref().and_then(|lists: &CandidateLists| lists.at(p.to_array()));
         let sample = match near {
             Some(near) => self.distance.from_triangle(p, near.closest(self.distance.ssvh(), p).triangle),
             None => self.distance.at(p, guess),
         };
-        self.corner(p, &sample, hidden)
+        self.corner(p, &sample, missed)
     }
 
-    /// A point of an edge with the other sign than its ends, and how deep it is.
-    fn edge(&self, mut a: Corner, mut b: Corner, axis: Axis, hidden: Hidden) -> Option<(DVec3, f64)> {
+    /// Finds a point of an edge with the other sign than its ends. Returns the point and its depth.
+    fn edge(&self, mut a: Corner, mut b: Corner, axis: Axis, missed: Missed) -> Option<(DVec3, f64)> {
         let along = axis as usize;
-        for _ in 0..ALONG_EDGE {
+        for _ in 0..MAX_QUERIES_ON_EDGE {
             let length = b.p[along] - a.p[along];
             // The distance changes by no more than the way.
             if a.height + b.height >= length {
@@ -264,7 +265,7 @@ impl Search<'_> {
                 ((b.height - a.height - rise * length) / (fall - rise)).clamp(0.02 * length, 0.98 * length);
             let mut p = a.p;
             p[along] += x;
-            let middle = self.ask(p, a.triangle, hidden);
+            let middle = self.sample(p, a.triangle, missed);
             if middle.height < 0.0 {
                 return self.deep(middle);
             }
@@ -277,8 +278,8 @@ impl Search<'_> {
         None
     }
 
-    /// A point in a cell with the other sign than its corners, and how deep it is.
-    fn inside_cell(&self, cell: Ijk, corners: &[Option<Corner>; 8], hidden: Hidden) -> Option<(DVec3, f64)> {
+    /// Finds a point in a cell with the other sign than its corners. Returns the point and its depth.
+    fn inside_cell(&self, cell: Ijk, corners: &[Option<Corner>; 8], missed: Missed) -> Option<(DVec3, f64)> {
         let voxel = self.lattice.voxel;
         let lo = DVec3::from(self.lattice.world_from_index(cell));
         let hi = lo + voxel;
@@ -290,8 +291,8 @@ impl Search<'_> {
         }
         let mut p = centre;
         let mut triangle = corners.iter().flatten().next()?.triangle;
-        for _ in 0..IN_CELL {
-            let here = self.ask(p, triangle, hidden);
+        for _ in 0..MAX_QUERIES_IN_CELL {
+            let here = self.sample(p, triangle, missed);
             if here.height < 0.0 {
                 return self.deep(here);
             }
@@ -316,8 +317,10 @@ impl Search<'_> {
     }
 }
 
-/// From the directions at nodes to those at all corners of the cells whose lowest nodes they are, one axis after the
-/// other. The last along an axis have no cell, and mean nothing.
+/// Unites the directions at all corners of each cell, by the cell's lowest node.
+///
+/// `sets` holds the directions at nodes. The axes follow one another. The last nodes along an axis have
+/// no cell; what is returned for them means nothing.
 fn around_cells(mut sets: [Directions; NODES]) -> [Directions; NODES] {
     for step in [1, SIDE, SIDE * SIDE] {
         for n in 0..NODES - step {
