@@ -2,10 +2,8 @@
 //!
 //! Nothing inside the library uses it: each operation returns an error of its own.
 
-use crate::contour::ContourError;
-use crate::edge::TooManyEdges;
 use crate::io::{LoadError, MergeError, SaveError};
-use crate::offset::{MemoryError, OffsetError};
+use crate::offset::OffsetError;
 use crate::run::{Cancelled, ThreadError};
 use crate::thicken::ThickenError;
 use crate::vdb::VdbError;
@@ -32,7 +30,7 @@ pub enum Error {
     Offset(OffsetError),
     /// A patch could not be thickened.
     #[error(transparent)]
-    Thicken(#[from] ThickenError),
+    Thicken(ThickenError),
     /// A mesh could not be judged.
     #[error(transparent)]
     Verify(VerifyError),
@@ -71,6 +69,15 @@ impl From<VerifyError> for Error {
     }
 }
 
+impl From<ThickenError> for Error {
+    fn from(error: ThickenError) -> Self {
+        match error {
+            ThickenError::Cancelled => Error::Cancelled,
+            other => Error::Thicken(other),
+        }
+    }
+}
+
 impl From<VdbError> for Error {
     fn from(error: VdbError) -> Self {
         match error {
@@ -78,23 +85,5 @@ impl From<VdbError> for Error {
             VdbError::Merge(error) => Error::Merge(error),
             other => Error::Vdb(other),
         }
-    }
-}
-
-impl From<ContourError> for Error {
-    fn from(error: ContourError) -> Self {
-        OffsetError::from(error).into()
-    }
-}
-
-impl From<TooManyEdges> for Error {
-    fn from(error: TooManyEdges) -> Self {
-        OffsetError::from(error).into()
-    }
-}
-
-impl From<MemoryError> for Error {
-    fn from(error: MemoryError) -> Self {
-        OffsetError::from(error).into()
     }
 }

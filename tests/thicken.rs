@@ -3,12 +3,13 @@
 mod common;
 
 use common::thickened::check;
-use exocarp::error::Error;
 use exocarp::mesh::measure::{area, signed_volume};
 use exocarp::mesh::{Topology, TriMesh, shapes};
 use exocarp::offset::{Length, VoxelSize};
 use exocarp::run::RunSettings;
-use exocarp::thicken::{PatchError, SectionNormals, Side, ThickenError, ThickenSettings, thicken};
+use exocarp::thicken::{
+    PatchError, SectionNormals, Side, ThickenError, ThickenSettings, ThickenSettingsError, thicken,
+};
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 
@@ -59,7 +60,7 @@ fn both(mut a: TriMesh, b: TriMesh) -> TriMesh {
 #[track_caller]
 fn refused(patch: &TriMesh, settings: &ThickenSettings) -> ThickenError {
     match thicken(patch, settings, &run()) {
-        Err(Error::Thicken(error)) => error,
+        Err(error) => error,
         other => panic!("{other:?}"),
     }
 }
@@ -285,17 +286,24 @@ fn what_is_no_oriented_patch_is_refused_with_its_place() {
     let empty = TriMesh::default();
     assert!(matches!(refused(&empty, &thin), ThickenError::Patch(PatchError::NoTriangles)));
     let coarse = settings(0.1, 0.05, Side::Inner);
-    assert!(matches!(refused(&square(2), &coarse), ThickenError::TooCoarse { .. }));
+    assert!(matches!(
+        refused(&square(2), &coarse),
+        ThickenError::Settings(ThickenSettingsError::TooCoarse { .. })
+    ));
 }
 
 #[test]
 fn a_thickness_map_is_followed() {
     let patch = square(8);
     let map: Vec<f64> = patch.vertices.iter().map(|v| 0.2 + 0.05 * v[0]).collect();
-    let result = check(&patch, &ThickenSettings { map: Some(map), ..settings(0.2, 0.05, Side::Inner) });
+    let result =
+        check(&patch, &ThickenSettings { thickness_map: Some(map), ..settings(0.2, 0.05, Side::Inner) });
     assert!((signed_volume(&result.mesh) / 0.8 - 1.0).abs() < 0.01);
-    let wrong = ThickenSettings { map: Some(vec![0.1; 3]), ..settings(0.2, 0.05, Side::Inner) };
-    assert!(matches!(refused(&patch, &wrong), ThickenError::Map { values: 3, .. }));
+    let wrong = ThickenSettings { thickness_map: Some(vec![0.1; 3]), ..settings(0.2, 0.05, Side::Inner) };
+    assert!(matches!(
+        refused(&patch, &wrong),
+        ThickenError::Settings(ThickenSettingsError::Map { values: 3, .. })
+    ));
 }
 
 #[test]

@@ -7,12 +7,10 @@ mod common;
 
 use common::random::Random;
 use common::thickened::{audit, check};
-use exocarp::error::Error;
 use exocarp::mesh::TriMesh;
-use exocarp::offset::OffsetError;
 use exocarp::offset::{Length, Precision, VoxelSize};
 use exocarp::run::RunSettings;
-use exocarp::thicken::{Side, ThickenSettings, thicken};
+use exocarp::thicken::{Side, ThickenError, ThickenSettings, thicken};
 
 /// A case takes at most about this much: a second of work.
 const MEMORY: u64 = 100 << 20;
@@ -90,7 +88,13 @@ fn random_patches_of_any_thickness_are_sound_or_refused() {
                 sound += 1;
                 far += u64::from(matches!(settings.thickness, Length::OfDiagonal(share) if share > 10.0));
             }
-            Err(Error::Thicken(_) | Error::Offset(_)) => refused += 1,
+            Err(
+                ThickenError::Settings(_)
+                | ThickenError::Patch(_)
+                | ThickenError::Obstacle { .. }
+                | ThickenError::Memory(_)
+                | ThickenError::CoarseCoordinates { .. },
+            ) => refused += 1,
             Err(error) => panic!("seed {seed}, {settings:?}: {error}"),
         }
     }
@@ -146,7 +150,7 @@ fn what_would_not_fit_is_refused_before_it_starts() {
     // Thin and fine; and far more thick than wide, where half a ball of nodes has to be looked at.
     for (thickness, voxel) in [(0.01, 1e-3), (400.0, 1.0)] {
         match thicken(&mesh, &settings(thickness, voxel, 200 << 20), &RunSettings::with_threads(2).unwrap()) {
-            Err(Error::Offset(OffsetError::Memory(error))) => {
+            Err(ThickenError::Memory(error)) => {
                 assert!(error.needed > 300 << 20, "{error}");
                 assert!(error.smallest_voxel > voxel && error.smallest_voxel < 10.0 * voxel, "{error}");
             }

@@ -164,7 +164,7 @@ pub(super) struct ThickenArguments {
     #[arg(long, value_name = "N", value_parser = resolution, allow_negative_numbers = true)]
     pub resolution: Option<u32>,
     /// Halve the voxel size up to N times where the lattice is too coarse for the patch
-    #[arg(long, value_name = "N", default_value_t = ThickenSettings::default().halvings)]
+    #[arg(long, value_name = "N", default_value_t = ThickenSettings::default().max_halvings)]
     #[arg(value_parser = clap::value_parser!(u32).range(0..=10))]
     pub resolve: u32,
     /// Rounds of shape processing at most: flatter sections with sharper edges, and a shell nearer to its distance

@@ -6,7 +6,7 @@ use exocarp::io::{LoadError, MergeError, MergeErrorKind, SaveError, SaveErrorKin
 use exocarp::offset::{InputError, OffsetError};
 use exocarp::paper::PaperError;
 use exocarp::run::{Cancelled, ThreadError};
-use exocarp::thicken::ThickenError;
+use exocarp::thicken::{ThickenError, ThickenSettingsError};
 use exocarp::vdb::VdbError;
 use exocarp::verify::VerifyError;
 use std::io::ErrorKind;
@@ -138,7 +138,12 @@ fn remedy(error: &Error) -> &'static str {
         Error::Offset(OffsetError::Input(InputError::Open { .. } | InputError::Misoriented { .. })) => {
             ", or go ahead all the same with --sign pseudonormal"
         }
-        Error::Offset(OffsetError::Memory(_)) => " (or raise --max-memory)",
+        Error::Offset(OffsetError::Memory(_)) | Error::Thicken(ThickenError::Memory(_)) => {
+            " (or raise --max-memory)"
+        }
+        Error::Thicken(ThickenError::Settings(ThickenSettingsError::Thickness(_))) => {
+            "; --side outer has the solid on the other side"
+        }
         Error::Merge(error) if matches!(error.kind, MergeErrorKind::NotATile) => {
             "; exocarp offset --tile writes them"
         }
@@ -155,9 +160,7 @@ fn of(error: &Error) -> Exit {
         Error::Offset(error) => of_offset(error),
         Error::Verify(VerifyError::Setting { .. }) => Exit::Usage,
         Error::Verify(_) => Exit::Input,
-        Error::Thicken(ThickenError::Patch(_)) => Exit::Input,
-        Error::Thicken(ThickenError::Obstacle { .. }) => Exit::Limit,
-        Error::Thicken(_) => Exit::Usage,
+        Error::Thicken(error) => of_thicken(error),
         Error::Threads(_) => Exit::Limit,
         Error::Save(error) => match &error.kind {
             SaveErrorKind::Extension(_) => Exit::Usage,
@@ -185,6 +188,20 @@ fn of_offset(error: &OffsetError) -> Exit {
         OffsetError::Memory(_) | OffsetError::TooManyEdges(_) => Exit::Limit,
         OffsetError::TooManyVertices | OffsetError::CoarseCoordinates { .. } => Exit::Limit,
         OffsetError::Vdb(error) => of_vdb(error),
+        _ => Exit::Internal,
+    }
+}
+
+fn of_thicken(error: &ThickenError) -> Exit {
+    match error {
+        ThickenError::Cancelled => Exit::Interrupted,
+        ThickenError::Settings(_) => Exit::Usage,
+        ThickenError::Patch(_) => Exit::Input,
+        ThickenError::Obstacle { .. } | ThickenError::Memory(_) | ThickenError::TooManyEdges(_) => {
+            Exit::Limit
+        }
+        ThickenError::TooManyVertices | ThickenError::CoarseCoordinates { .. } => Exit::Limit,
+        ThickenError::Offset(error) => of_offset(error),
         _ => Exit::Internal,
     }
 }

@@ -14,7 +14,9 @@ use super::thickness_map;
 use exocarp::mesh::CleanReport;
 use exocarp::offset::{Length, OffsetSettings, VoxelSize, offset_band};
 use exocarp::run::Phase;
-use exocarp::thicken::{ThickenResult, ThickenSettings, ThickenStatistics, ThickenTimes, thicken};
+use exocarp::thicken::{
+    ThickenError, ThickenResult, ThickenSettings, ThickenStatistics, ThickenTimes, thicken,
+};
 use serde::Serialize;
 use std::path::Path;
 
@@ -26,7 +28,7 @@ pub(super) fn run(arguments: &ThickenArguments, session: &Session) -> Result<(),
 
     let (loaded, loading) = load_mesh(&arguments.input, session)?;
     if let Some(path) = &arguments.thickness_map {
-        settings.map = Some(thickness_map::load(path, &arguments.input, &loaded.mesh)?);
+        settings.thickness_map = Some(thickness_map::load(path, &arguments.input, &loaded.mesh)?);
     }
     let surface = CleanReport { welded_vertices: 0, unreferenced_vertices: 0, ..loaded.report };
     if !surface.is_clean() {
@@ -93,14 +95,14 @@ fn settings(arguments: &ThickenArguments, session: &Session) -> Result<ThickenSe
         thickness: arguments.thickness.unwrap_or(defaults.thickness),
         side: arguments.side.side(),
         voxel,
-        halvings: arguments.resolve,
+        max_halvings: arguments.resolve,
         rounds: arguments.rounds,
         section_normals: arguments.section_normals.normals(),
         precision: precision(arguments.more.f64),
         max_memory: session.max_memory,
         ..defaults
     };
-    settings.validate()?;
+    settings.validate().map_err(ThickenError::from)?;
     Ok(settings)
 }
 

@@ -1,23 +1,23 @@
-//! A closed patch: the shell between it and its offset on one side.
+//! The solid of a closed patch: the shell between the patch and its offset on one side.
 
-use super::settings::Resolved;
-use super::{ThickenSettings, ThickenTimes};
-use crate::error::Error;
+use super::settings::ModelUnits;
+use super::{ThickenError, ThickenSettings, ThickenTimes};
 use crate::mesh::TriMesh;
 use crate::mesh::measure::signed_volume;
 use crate::offset::{EngineTimes, Length, OffsetError, OffsetSettings, VoxelSize, offset};
 use crate::run::RunSettings;
 
-/// The patch, and its offset by the thickness with the opposite orientation (\[WC13\] Figure 13). A patch that is too small
-/// for a cavity stays as it is: the solid fills it.
-pub(super) fn shell(
+/// Joins the patch and its offset by the thickness, in opposite orientation (\[WC13\] Figure 13).
+///
+/// A patch that is too small for a cavity stays as it is: the solid fills it.
+pub(super) fn closed_shell(
     patch: &TriMesh,
-    at: Resolved,
+    at: ModelUnits,
     settings: &ThickenSettings,
     times: &mut ThickenTimes,
     run: &RunSettings,
-) -> Result<TriMesh, Error> {
-    let Resolved { thickness, voxel } = at;
+) -> Result<TriMesh, ThickenError> {
+    let ModelUnits { thickness, voxel } = at;
     // The solid is on the negative side: within the patch, or around it.
     let is_around = signed_volume(patch) < 0.0;
     let offset_settings = |distance| OffsetSettings {
@@ -50,7 +50,7 @@ pub(super) fn shell(
     Ok(mesh)
 }
 
-/// The same surface with its normals on the other side.
+/// Turns the normals of a surface to its other side.
 fn reversed(mut mesh: TriMesh) -> TriMesh {
     mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
     mesh

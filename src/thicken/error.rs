@@ -1,21 +1,105 @@
 //! Why a patch cannot be thickened.
 
+use crate::contour::{ContourError, Precision};
+use crate::edge::TooManyEdges;
 use crate::mesh::{LENGTHS, MeshError};
+use crate::offset::{MemoryError, OffsetError};
+use crate::run::Cancelled;
 use std::fmt;
 
-/// Why [`thicken`](super::thicken) refused its settings or gave up.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+/// Why [`thicken`](super::thicken) refused its settings or its patch, or gave up.
+#[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ThickenError {
+    /// A setting makes no sense, by itself or for this patch.
+    #[error(transparent)]
+    Settings(#[from] ThickenSettingsError),
+    /// The patch cannot be thickened.
+    #[error(transparent)]
+    Patch(#[from] PatchError),
+    /// The lattice is too coarse for a place of the patch, also after all halvings.
+    #[error(
+        "the solid cannot be closed near {}: {obstacle}, with voxel size {voxel:.6}; choose a \
+         smaller voxel size or thickness, or mend the patch there", Point(*.at)
+    )]
+    Obstacle {
+        /// The obstacle.
+        obstacle: Obstacle,
+        /// A point near the obstacle.
+        at: [f64; 3],
+        /// The last voxel size that was tried, in model units.
+        voxel: f64,
+    },
+    /// The work would not fit into memory.
+    #[error(transparent)]
+    Memory(#[from] MemoryError),
+    /// The solid's boundary crosses more lattice edges than 32-bit numbers can count.
+    #[error(transparent)]
+    TooManyEdges(#[from] TooManyEdges),
+    /// The result has more vertices than 32-bit numbers can count.
+    #[error("the result has more than 4294967295 vertices; choose a larger voxel size")]
+    TooManyVertices,
+    /// The coordinates of the chosen precision are too coarse for the voxel size.
+    #[error(
+        "coordinates of size {far} are too coarse in {precision:?} for voxels of size {voxel}; \
+         choose 64-bit coordinates, larger voxels, or move the model to the origin"
+    )]
+    CoarseCoordinates {
+        /// The largest coordinate, in model units.
+        far: f64,
+        /// The voxel size, in model units.
+        voxel: f64,
+        /// The precision that was asked for.
+        precision: Precision,
+    },
+    /// The offset that a closed patch needs cannot be made.
+    #[error(transparent)]
+    Offset(OffsetError),
+    /// The run was cancelled.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl From<Cancelled> for ThickenError {
+    fn from(Cancelled: Cancelled) -> Self {
+        ThickenError::Cancelled
+    }
+}
+
+impl From<ContourError> for ThickenError {
+    fn from(error: ContourError) -> Self {
+        OffsetError::from(error).into()
+    }
+}
+
+impl From<OffsetError> for ThickenError {
+    fn from(error: OffsetError) -> Self {
+        match error {
+            OffsetError::Cancelled => ThickenError::Cancelled,
+            OffsetError::Memory(error) => ThickenError::Memory(error),
+            OffsetError::TooManyEdges(error) => ThickenError::TooManyEdges(error),
+            OffsetError::TooManyVertices => ThickenError::TooManyVertices,
+            OffsetError::CoarseCoordinates { far, voxel, precision } => {
+                ThickenError::CoarseCoordinates { far, voxel, precision }
+            }
+            other => ThickenError::Offset(other),
+        }
+    }
+}
+
+/// A setting of a thickening that makes no sense.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ThickenSettingsError {
     /// The thickness is zero, negative, infinite or not a number.
-    #[error("the thickness must be a positive number, not {0}; --side outer has the solid on the other side")]
+    #[error("the thickness must be a positive number, not {0}")]
     Thickness(f64),
     /// The thickness map does not belong to the patch.
     #[error("the thickness map has {values} values, and the patch {vertices} vertices")]
     Map {
-        /// Values in the map.
+        /// Number of values in the map.
         values: usize,
-        /// Vertices of the patch.
+        /// Number of vertices of the patch.
         vertices: usize,
     },
     /// The voxel size is zero, negative, infinite or not a number.
@@ -30,17 +114,17 @@ pub enum ThickenError {
          a voxel size below {:.6}, or leave it out", 0.5 * .thickness
     )]
     TooCoarse {
-        /// The voxel size.
+        /// The voxel size, in model units.
         voxel: f64,
-        /// The thickness.
+        /// The thickness, in model units.
         thickness: f64,
     },
     /// A length is too large or too small to work with ([`LENGTHS`]).
     #[error("the {what} is {length:e}, and lengths from {:e} to {:e} can be worked with; choose another one", LENGTHS.start(), LENGTHS.end())]
     Length {
-        /// Which length.
+        /// Name of the length, for messages.
         what: &'static str,
-        /// The length.
+        /// The length, in model units.
         length: f64,
     },
     /// Lattice indices would leave the range of 32-bit integers.
@@ -49,34 +133,18 @@ pub enum ThickenError {
          of at least {smallest}, or move the patch towards the origin"
     )]
     Range {
-        /// The voxel size.
+        /// The voxel size, in model units.
         voxel: f64,
-        /// The smallest voxel size that works.
+        /// The smallest voxel size that works, in model units.
         smallest: f64,
-    },
-    /// The patch cannot be thickened.
-    #[error(transparent)]
-    Patch(#[from] PatchError),
-    /// The lattice is too coarse for a place of the patch, also after all halvings.
-    #[error(
-        "the solid cannot be closed near {}: {obstacle}, with voxel size {voxel:.6}; choose a \
-         smaller voxel size or thickness, or mend the patch there", Point(*.at)
-    )]
-    Obstacle {
-        /// What is in the way.
-        obstacle: Obstacle,
-        /// Where.
-        at: [f64; 3],
-        /// The last voxel size that was tried.
-        voxel: f64,
     },
 }
 
-/// What is wrong with a patch.
+/// A fault of a patch.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PatchError {
-    /// There is no triangle.
+    /// The patch has no triangle.
     #[error("the mesh has no triangles")]
     NoTriangles,
     /// A vertex or a triangle cannot be worked with.
@@ -85,7 +153,7 @@ pub enum PatchError {
     /// An edge has more than two triangles.
     #[error("the patch is not 2-manifold: the edge from {} to {} has more than two triangles", Point(.ends[0]), Point(.ends[1]))]
     NonManifoldEdge {
-        /// Its ends.
+        /// Both ends of the edge.
         ends: [[f64; 3]; 2],
     },
     /// The triangles of an edge do not agree on the outside.
@@ -94,7 +162,7 @@ pub enum PatchError {
          them (a surface with one side only cannot be thickened)", Point(.ends[0]), Point(.ends[1])
     )]
     Misoriented {
-        /// Its ends.
+        /// Both ends of the edge.
         ends: [[f64; 3]; 2],
     },
     /// A part of the patch touches the inside of another one in a vertex.
@@ -106,12 +174,12 @@ pub enum PatchError {
     /// The patch intersects itself.
     #[error("the patch intersects itself: triangles {} and {} meet near {}", .triangles[0], .triangles[1], Point(*.at))]
     Intersects {
-        /// Two of its triangles, numbered from 0.
+        /// The first two triangles that meet, numbered from 0.
         triangles: [u32; 2],
-        /// Where they meet.
+        /// A point of both triangles.
         at: [f64; 3],
     },
-    /// A triangle has no area, or two vertices are one, once coordinates are rounded as they will be written.
+    /// A triangle has no area once coordinates are rounded as they will be written.
     #[error(
         "triangle {triangle} near {} has no area in the coordinates of the output; write 64-bit coordinates, or drop it",
         Point(*.at)
@@ -119,23 +187,24 @@ pub enum PatchError {
     Degenerate {
         /// The triangle, numbered from 0.
         triangle: u32,
-        /// One of its corners.
+        /// One of the triangle's vertices.
         at: [f64; 3],
     },
 }
 
-/// What kept a solid from being closed on a lattice.
+/// A reason why a solid could not be closed on a lattice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Obstacle {
-    /// The solid's section has a rim where the patch has no boundary: sheets are nearer to each other than the lattice sees.
+    /// The section has a rim where the patch has no boundary: sheets of the patch are nearer to each
+    /// other than the lattice resolves.
     Sheets,
-    /// Boundary loops of the patch are nearer to each other than the lattice sees.
+    /// Boundary loops of the patch are nearer to each other than the lattice resolves.
     Loops,
     /// A boundary loop has no rim of the section near it.
     Hole,
-    /// The ribbon between a boundary loop and the section cannot do without intersections.
-    Ribbon,
+    /// Every strip between a boundary loop and the section would intersect something.
+    Strip,
     /// The section or the shell meets the patch.
     Shell,
 }
@@ -146,7 +215,7 @@ impl fmt::Display for Obstacle {
             Obstacle::Sheets => "sheets of the patch are too near to each other",
             Obstacle::Loops => "boundary loops of the patch are too near to each other",
             Obstacle::Hole => "a boundary loop is too narrow for a wall",
-            Obstacle::Ribbon => "the wall along the boundary would intersect something",
+            Obstacle::Strip => "the wall along the boundary would intersect something",
             Obstacle::Shell => "the wall or the shell would meet the patch",
         })
     }
@@ -160,13 +229,4 @@ impl fmt::Display for Point {
         let [x, y, z] = self.0;
         write!(f, "({x:.6}, {y:.6}, {z:.6})")
     }
-}
-
-/// A place where a lattice does not do.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Blocked {
-    pub obstacle: Obstacle,
-    pub at: [f64; 3],
-    /// A boundary edge of each loop that is in the way there and elsewhere.
-    pub edges: Vec<[u32; 2]>,
 }

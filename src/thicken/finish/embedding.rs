@@ -1,8 +1,9 @@
-//! A finished solid whose vertices can be moved without making it intersect itself.
+//! An embedded mesh whose vertices move only where no intersection arises.
 //!
-//! As in the patches of the contour ([`contour`](crate::contour)): a vertex is moved only if the triangles at it keep an
-//! area, stay on their side, and meet neither another triangle nor each other, by exact predicates on the coordinates that
-//! will be written. So the solid is embedded afterwards, whatever it was moved for.
+//! As in the patches of the contour ([`contour`](crate::contour)), a vertex is moved only if its
+//! triangles keep an area and their side, and meet neither another triangle nor each other. Exact
+//! predicates decide, on the coordinates that will be written. So the mesh stays embedded, whatever a
+//! move is for.
 
 use crate::geom::box_tree::BoxTree;
 use crate::geom::predicates::projection_axis;
@@ -11,48 +12,50 @@ use crate::mesh::TriMesh;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// A mesh without intersections, ready for moves.
+/// A mesh without intersections whose vertices can be moved.
 #[derive(Debug)]
 pub(crate) struct Embedding<'a> {
     mesh: &'a mut TriMesh,
-    /// Around the triangles as they were at first, and as they are.
+    /// Boxes around each triangle as it was at first and after each of its moves.
     tree: BoxTree,
-    /// The position of each triangle in the tree.
+    /// Position of each triangle in the order of the tree.
     positions: Vec<u32>,
-    /// No vertex gets farther than this from where it was at first, along each axis; in model units.
-    reach: f64,
+    /// Maximum distance of a vertex from its first position along each axis, in model units.
+    max_travel: f64,
 }
 
 impl<'a> Embedding<'a> {
-    /// `mesh` must be free of intersections.
-    pub fn new(mesh: &'a mut TriMesh, reach: f64) -> Embedding<'a> {
+    /// Wraps a mesh, which must be free of intersections. `max_travel` is in model units.
+    pub fn new(mesh: &'a mut TriMesh, max_travel: f64) -> Embedding<'a> {
         let tree =
             BoxTree::new(&mesh.vertices, &mesh.triangles, (0..mesh.triangles.len() as u32).into_par_iter());
         let mut positions = vec![0; mesh.triangles.len()];
         (0..).zip(tree.order()).for_each(|(position, &t)| positions[t as usize] = position);
-        Embedding { mesh, tree, positions, reach }
+        Embedding { mesh, tree, positions, max_travel }
     }
 
-    /// Where a vertex is.
-    pub fn at(&self, vertex: u32) -> DVec3 {
+    /// Returns the position of a vertex.
+    pub fn position(&self, vertex: u32) -> DVec3 {
         DVec3::from(self.mesh.vertices[vertex as usize])
     }
 
-    /// The area vector of a triangle.
+    /// Returns the area vector of a triangle.
     pub fn area(&self, triangle: u32) -> DVec3 {
         let [a, b, c] = self.mesh.corners(triangle as usize).map(DVec3::from);
         0.5 * (b - a).cross(c - a)
     }
 
-    /// The vertices of a triangle.
+    /// Returns the vertices of a triangle.
     pub fn vertices(&self, triangle: u32) -> [u32; 3] {
         self.mesh.triangles[triangle as usize]
     }
 
-    /// Moves a vertex that was at `first` to `to`, which must be rounded, if the mesh stays embedded; `star` are all
-    /// triangles at it.
+    /// Moves a vertex to `to` if the mesh stays embedded, and returns whether it did.
+    ///
+    /// `first` is the vertex's first position, `star` are all its triangles. `to` must be rounded as it
+    /// will be written.
     pub fn try_move(&mut self, vertex: u32, star: &[u32], first: DVec3, to: DVec3) -> bool {
-        if (to - first).abs().max_element() > self.reach {
+        if (to - first).abs().max_element() > self.max_travel {
             return false;
         }
         let from = self.mesh.vertices[vertex as usize];
@@ -70,7 +73,7 @@ impl<'a> Embedding<'a> {
         fits
     }
 
-    /// Whether triangles meet nothing beyond what they share.
+    /// Whether the triangles of a star have area and meet nothing beyond what they share.
     fn is_free(&self, star: &[u32]) -> bool {
         let mesh = &*self.mesh;
         let meet = |a: u32, b: u32| {
@@ -101,7 +104,7 @@ impl<'a> Embedding<'a> {
         !found
     }
 
-    /// The box around a triangle.
+    /// Returns the lower and the upper corner of the box around a triangle.
     fn bounds(&self, triangle: u32) -> [DVec3; 2] {
         let [a, b, c] = self.mesh.corners(triangle as usize).map(DVec3::from);
         [a.min(b).min(c), a.max(b).max(c)]
@@ -124,13 +127,13 @@ mod tests {
         let star: Vec<u32> =
             (0..cube.triangles.len() as u32).filter(|&t| cube.triangles[t as usize].contains(&v)).collect();
         let mut embedding = Embedding::new(&mut cube, 0.5);
-        let from = embedding.at(v);
+        let from = embedding.position(v);
         let mut to = |z: f64, x: f64| embedding.try_move(v, &star, from, DVec3::new(x, 0.0, z));
         assert!(to(1.2, 0.0));
         assert!(!to(1.35, 0.0), "through the triangle");
         assert!(!to(1.0, 0.6), "out of reach");
         assert!(!to(0.6, 0.1), "a triangle would turn to its other side");
         assert!(to(0.9, 0.05));
-        assert_eq!(embedding.at(v), DVec3::new(0.05, 0.0, 0.9));
+        assert_eq!(embedding.position(v), DVec3::new(0.05, 0.0, 0.9));
     }
 }

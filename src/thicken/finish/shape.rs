@@ -1,121 +1,124 @@
 //! Shape processing of section and shell (\[WC13\] section 4.3).
 //!
-//! Each round moves the vertices at the section towards the minimisers of the quadratic error of all faces around them,
-//! wherever those are; vertices of the shell alone go to the true shell. Each move is tested exactly ([`Embedding`]), and
-//! none touches the patch. The normals of the section are those of the walls on the boundary's edges, or, as in the paper,
-//! the faces' own, smoothed in each round.
+//! Each round moves the vertices at the section towards the minimisers of the quadratic error of all
+//! faces around them, wherever the minimisers are. Vertices of the shell alone go to the true shell.
+//! Each move is tested exactly ([`Embedding`]), and none touches the patch. The normals of the section
+//! are those of the walls on the boundary's edges, or, as in the paper, the faces' own, smoothed in
+//! each round.
 
 use super::embedding::Embedding;
 use crate::contour::Precision;
 use crate::geom::quadric::Qef;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings, SHARE};
-use crate::thicken::SectionNormals;
-use crate::thicken::solid::edge_search::Part;
+use crate::thicken::solid::edge_search::SolidFace;
 use crate::thicken::solid::region::Solid;
+use crate::thicken::{SectionNormals, ShapeCounts};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// The part of the way to the minimiser that a vertex goes in a round: alpha of \[WC13\]. Exact normals stay as they are, and so
-/// does the minimiser: there a vertex goes all the way at once, and this far where it must not.
+/// Share of the way to the minimiser that a vertex goes in a round: alpha of \[WC13\]. Exact normals stay
+/// as they are, and so does the minimiser: there a vertex goes all the way at once, and only this far
+/// where an exact test refuses that.
 const BLENDING: f64 = 0.25;
 
-/// Moves shorter than this, in voxels, are not made: nobody sees them, and a test takes as long as for others.
-const STILL: f64 = 0.02;
+/// Minimum length of a move, in voxels. Nobody sees shorter ones, and their tests take as long.
+const MIN_MOVE: f64 = 0.02;
 
-/// No vertex gets farther than this from where the contour had it, in voxels: two cells of the lattice.
-const REACH: f64 = 2.0;
+/// Maximum distance of a vertex from where the contour had it, in voxels: two cells of the lattice.
+const MAX_TRAVEL: f64 = 2.0;
 
-/// Section faces whose normals differ by more than this cosine's angle, 30 degrees, are on two sides of a corner of the
-/// boundary, which stays.
-const ALIGNED: f64 = 0.866;
+/// Minimum cosine between the normals of two section faces that are smoothed together: 30 degrees. Faces
+/// at a larger angle are on two sides of a corner of the boundary, which stays.
+const MIN_ALIGNMENT: f64 = 0.866;
 
-/// A face of the contour, and what is known of the solid's boundary there.
+/// A triangle of the contour, with the solid's boundary at its lattice edge.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Face {
-    pub part: Part,
-    /// Where the lattice edge crosses.
+pub(crate) struct ContourFace {
+    /// The face of the solid that the lattice edge crosses.
+    pub of: SolidFace,
+    /// Crossing of the lattice edge.
     pub point: DVec3,
-    /// The unit normal there.
+    /// Unit normal at the crossing.
     pub normal: DVec3,
 }
 
-/// The faces of a solid that may be moved.
+/// The triangles of a solid whose vertices may be moved.
 #[derive(Debug)]
-pub(crate) struct Moving {
-    /// The number of the first of them among the mesh's triangles.
+pub(crate) struct MovableFaces {
+    /// Number of the first face among the mesh's triangles.
     pub first: usize,
-    /// One after the other.
-    pub faces: Vec<Face>,
-    /// Vertices from this number on are not of the patch.
+    /// The faces, in the order of the triangles.
+    pub faces: Vec<ContourFace>,
+    /// Number of the first vertex that is not of the patch.
     pub first_vertex: u32,
 }
 
-/// How often, and with which normals.
+/// Settings of shape processing.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Rounds {
-    pub most: u32,
+pub(crate) struct ShapeSettings {
+    /// Maximum number of rounds.
+    pub max_rounds: u32,
+    /// Normals of the section.
     pub normals: SectionNormals,
-}
-
-/// What was done.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Shaped {
-    /// Rounds after which nothing moved, or all of them.
-    pub rounds: u32,
-    /// Moves that were made.
-    pub moves: u64,
+    /// Precision of the moved coordinates.
+    pub precision: Precision,
 }
 
 /// A vertex that may be moved.
-struct Vertex {
+struct MovableVertex {
+    /// Number of the vertex.
     number: u32,
-    /// Where the contour had it.
+    /// Position that the contour gave it.
     first: DVec3,
-    /// All its triangles.
+    /// All triangles of the vertex.
     star: Vec<u32>,
 }
 
-/// Where a vertex is to go.
+/// Target of a move.
 struct Target {
     to: DVec3,
-    /// Whether it is there in the next round, too, even where the normals of the section change.
+    /// Whether the target will be the same in the next round, even where the normals of the section
+    /// change.
     stays: bool,
 }
 
-/// At most `rounds` rounds over a solid.
-pub(crate) fn process(
+/// Moves vertices of section and shell, in rounds, until nothing moves.
+///
+/// # Errors
+/// [`Cancelled`].
+pub(crate) fn process_shape(
     mesh: &mut TriMesh,
-    mut moving: Moving,
+    mut movable: MovableFaces,
     solid: &Solid<'_>,
     voxel: f64,
-    precision: Precision,
-    Rounds { most: rounds, normals }: Rounds,
+    settings: ShapeSettings,
     run: &RunSettings,
-) -> Result<Shaped, Cancelled> {
-    let mut shaped = Shaped::default();
-    if rounds == 0 {
-        return Ok(shaped);
+) -> Result<ShapeCounts, Cancelled> {
+    let ShapeSettings { max_rounds, normals, precision } = settings;
+    let mut counts = ShapeCounts::default();
+    if max_rounds == 0 {
+        return Ok(counts);
     }
-    let vertices = movable(mesh, &moving, voxel);
-    let mut embedding = Embedding::new(mesh, REACH * voxel);
+    let vertices = movable_vertices(mesh, &movable, voxel);
+    let mut embedding = Embedding::new(mesh, MAX_TRAVEL * voxel);
     let round_off = |p: DVec3| DVec3::from(p.to_array().map(|x| precision.round(x)));
-    let mut active: Vec<&Vertex> = vertices.iter().collect();
-    while shaped.rounds < rounds {
+    let mut active: Vec<&MovableVertex> = vertices.iter().collect();
+    while counts.rounds < max_rounds {
         run.check()?;
-        shaped.rounds += 1;
+        counts.rounds += 1;
         if normals == SectionNormals::Smoothed {
-            smooth(&embedding, &mut moving);
+            smooth(&embedding, &mut movable);
         }
         let targets: Vec<Option<Target>> = active
             .par_iter()
             .with_max_len(SHARE)
-            .map(|vertex| target(&embedding, &moving, solid, vertex, voxel))
+            .map(|vertex| target(&embedding, &movable, solid, vertex, voxel))
             .collect();
         let mut moved = Vec::new();
         for (vertex, to) in active.into_iter().zip(targets) {
             let Some(Target { to, stays }) = to else { continue };
-            let from = embedding.at(vertex.number);
+            let from = embedding.position(vertex.number);
             let steps: &[f64] =
                 if stays || normals == SectionNormals::Exact { &[1.0, BLENDING] } else { &[BLENDING] };
             let mut go = |step: &f64| {
@@ -126,7 +129,7 @@ pub(crate) fn process(
                 moved.push(vertex);
             }
         }
-        shaped.moves += moved.len() as u64;
+        counts.moves += moved.len() as u64;
         if moved.is_empty() {
             break;
         }
@@ -136,28 +139,28 @@ pub(crate) fn process(
             SectionNormals::Smoothed => vertices.iter().collect(),
         };
     }
-    Ok(shaped)
+    Ok(counts)
 }
 
-/// The vertices at the section, and those of the shell that are not on it.
-fn movable(mesh: &TriMesh, moving: &Moving, voxel: f64) -> Vec<Vertex> {
+/// Collects the vertices at the section, and the vertices of the shell that are off the shell.
+fn movable_vertices(mesh: &TriMesh, movable: &MovableFaces, voxel: f64) -> Vec<MovableVertex> {
     let mut is_wanted = vec![false; mesh.vertices.len()];
-    for (n, face) in moving.faces.iter().enumerate() {
-        for v in mesh.triangles[moving.first + n] {
+    for (n, face) in movable.faces.iter().enumerate() {
+        for v in mesh.triangles[movable.first + n] {
             let off = face.normal.dot(DVec3::from(mesh.vertices[v as usize]) - face.point).abs();
-            is_wanted[v as usize] |= face.part == Part::Section || off > STILL * voxel;
+            is_wanted[v as usize] |= face.of == SolidFace::Section || off > MIN_MOVE * voxel;
         }
     }
-    is_wanted[..moving.first_vertex as usize].fill(false);
+    is_wanted[..movable.first_vertex as usize].fill(false);
     let mut slots = vec![u32::MAX; mesh.vertices.len()];
     let mut vertices = Vec::new();
     for (v, _) in is_wanted.iter().enumerate().filter(|&(_, &wanted)| wanted) {
         slots[v] = vertices.len() as u32;
         let first = DVec3::from(mesh.vertices[v]);
-        vertices.push(Vertex { number: v as u32, first, star: Vec::new() });
+        vertices.push(MovableVertex { number: v as u32, first, star: Vec::new() });
     }
-    // The patch has none of them.
-    for (t, triangle) in mesh.triangles.iter().enumerate().skip(moving.first) {
+    // No triangle of the patch has one of these vertices.
+    for (t, triangle) in mesh.triangles.iter().enumerate().skip(movable.first) {
         for slot in triangle.map(|v| slots[v as usize]).into_iter().filter(|&slot| slot != u32::MAX) {
             vertices[slot as usize].star.push(t as u32);
         }
@@ -165,20 +168,22 @@ fn movable(mesh: &TriMesh, moving: &Moving, voxel: f64) -> Vec<Vertex> {
     vertices
 }
 
-impl Moving {
-    fn face(&self, triangle: u32) -> Option<&Face> {
+impl MovableFaces {
+    /// Returns the face of a triangle, unless the triangle is of the patch, a strip or a cap.
+    fn face(&self, triangle: u32) -> Option<&ContourFace> {
         self.faces.get((triangle as usize).checked_sub(self.first)?)
     }
 }
 
-/// Steps 1, 2 and 4: the normals of the section's faces become the mean of those around them, as they are now.
-fn smooth(embedding: &Embedding<'_>, moving: &mut Moving) {
-    let sections: Vec<u32> = (0..moving.faces.len())
-        .filter(|&n| moving.faces[n].part == Part::Section)
-        .map(|n| (moving.first + n) as u32)
+/// Replaces the normal of each face of the section by the mean normal of the faces around it (steps 1, 2
+/// and 4 of \[WC13\] section 4.3).
+fn smooth(embedding: &Embedding<'_>, movable: &mut MovableFaces) {
+    let sections: Vec<u32> = (0..movable.faces.len())
+        .filter(|&n| movable.faces[n].of == SolidFace::Section)
+        .map(|n| (movable.first + n) as u32)
         .collect();
     let areas: Vec<DVec3> = sections.par_iter().with_min_len(256).map(|&t| embedding.area(t)).collect();
-    // Per corner its vertex and its triangle.
+    // Per triangle corner, its vertex and its triangle.
     let mut corners: Vec<(u32, u32)> = Vec::with_capacity(3 * sections.len());
     for (n, &t) in (0u32..).zip(&sections) {
         corners.extend(embedding.vertices(t).map(|v| (v, n)));
@@ -193,38 +198,38 @@ fn smooth(embedding: &Embedding<'_>, moving: &mut Moving) {
         .zip(&areas)
         .with_min_len(64)
         .map(|(&t, &own)| {
-            let is_near = |other: &DVec3| other.dot(own) >= ALIGNED * other.length() * own.length();
+            let is_near = |other: &DVec3| other.dot(own) >= MIN_ALIGNMENT * other.length() * own.length();
             embedding.vertices(t).into_iter().flat_map(around).filter(is_near).sum::<DVec3>()
         })
         .collect();
     for (&t, sum) in sections.iter().zip(&smoothed) {
-        let face = &mut moving.faces[t as usize - moving.first];
+        let face = &mut movable.faces[t as usize - movable.first];
         face.normal = sum.try_normalize().unwrap_or(face.normal);
     }
 }
 
-/// Step 3: where a vertex is to go, if that is far enough to go.
+/// Returns the target of a vertex, if a move there is long enough (step 3).
 fn target(
     embedding: &Embedding<'_>,
-    moving: &Moving,
+    movable: &MovableFaces,
     solid: &Solid<'_>,
-    vertex: &Vertex,
+    vertex: &MovableVertex,
     voxel: f64,
 ) -> Option<Target> {
-    let from = embedding.at(vertex.number);
-    // Triangles of strips and lids have no Hermite data of their own.
-    let faces: Vec<&Face> = vertex.star.iter().filter_map(|&t| moving.face(t)).collect();
+    let from = embedding.position(vertex.number);
+    // Triangles of strips and caps have no Hermite data of their own.
+    let faces: Vec<&ContourFace> = vertex.star.iter().filter_map(|&t| movable.face(t)).collect();
     let mut qef = Qef::default();
     faces.iter().for_each(|face| qef.add(face.point.to_array(), face.normal.to_array()));
     let least = DVec3::from(qef.minimiser_near(from.to_array()).point);
-    let is_shell = faces.iter().all(|face| face.part == Part::Shell);
+    let is_shell = faces.iter().all(|face| face.of == SolidFace::Shell);
     let to = if is_shell {
         // On a crease of the shell if there is one, and nowhere else.
-        let error = |p: DVec3| solid.off_shell(p).map(f64::abs);
+        let error = |p: DVec3| solid.depth_beyond_shell(p).map(f64::abs);
         let is_better = error(least)? < 0.5 * error(from)?;
-        if is_better { least } else { solid.onto_shell(from)? }
+        if is_better { least } else { solid.project_to_shell(from)? }
     } else {
         least
     };
-    (to.distance(from) > STILL * voxel).then_some(Target { to, stays: is_shell })
+    (to.distance(from) > MIN_MOVE * voxel).then_some(Target { to, stays: is_shell })
 }

@@ -1,4 +1,4 @@
-//! The boundary curve of an open mesh: its loops, and the walls that stand on it.
+//! The boundary of an open mesh: its loops, and the walls that stand on it.
 
 use crate::distance::Sample;
 use crate::geom::triangle::{Feature, Side};
@@ -12,29 +12,29 @@ use std::collections::BTreeMap;
 pub(crate) struct Boundary {
     /// Vertex numbers of each loop, in the direction in which the triangles run through its edges.
     pub loops: Vec<Vec<u32>>,
-    /// Per vertex whether it is on the boundary.
+    /// Per vertex, whether it is on the boundary.
     on_boundary: Vec<bool>,
-    /// Per half-edge (3 t + side) whether it is on the boundary.
+    /// Per half-edge (3 t + side), whether it is on the boundary.
     edges: Vec<bool>,
-    /// Per vertex of the boundary the outward unit vector in the surface: the mean of its two edges'.
+    /// Per vertex of the boundary, the outward unit vector in the surface: the mean of its two edges'.
     outward: Vec<DVec3>,
-    /// The vertices in which several fans of triangles touch, ascending.
+    /// Vertices in which several fans of triangles touch, ascending.
     pub touching: Vec<u32>,
-    /// The mean of the unit normals of all triangles there.
+    /// Mean unit normal of all triangles at each touching vertex.
     touching_normals: Vec<DVec3>,
 }
 
 /// An edge with one triangle.
 #[derive(Clone, Copy, Debug)]
 struct BoundaryEdge {
-    /// In the direction of its triangle.
+    /// Both ends, in the direction of the triangle.
     ends: [u32; 2],
     triangle: u32,
     side: Side,
 }
 
 impl Boundary {
-    /// The boundary of `mesh`.
+    /// Finds the boundary of `mesh`.
     ///
     /// # Errors
     /// When an edge has more than two triangles or two that run the same way, or a vertex inside the surface is one of
@@ -87,8 +87,8 @@ impl Boundary {
         self.loops.is_empty()
     }
 
-    /// Per triangle of `mesh` whether a vertex of it is on the boundary.
-    pub fn triangles(&self, mesh: &TriMesh) -> Vec<bool> {
+    /// Returns, per triangle of `mesh`, whether a vertex of it is on the boundary.
+    pub fn triangles_at(&self, mesh: &TriMesh) -> Vec<bool> {
         mesh.triangles.iter().map(|t| t.iter().any(|&v| self.on_boundary[v as usize])).collect()
     }
 
@@ -105,12 +105,13 @@ impl Boundary {
         }
     }
 
-    /// The unit normal at one of the vertices in which parts of the surface touch.
+    /// Returns the unit normal at a vertex in which parts of the surface touch.
     pub fn touching_normal(&self, vertex: u32) -> DVec3 {
         self.touching.binary_search(&vertex).map_or(DVec3::ZERO, |n| self.touching_normals[n])
     }
 
-    /// The normal of the wall that stands on the boundary at a point of it: out of the surface, within it.
+    /// Returns the unit normal of the wall that stands on the boundary at a point of it. The normal lies
+    /// in the plane of the surface and leads out of it.
     pub fn wall(&self, mesh: &TriMesh, sample: &Sample) -> DVec3 {
         let triangle = sample.triangle;
         match sample.feature {
@@ -121,7 +122,7 @@ impl Boundary {
     }
 }
 
-/// The unit vector in the plane of a triangle that leads out of it across an edge.
+/// Returns the unit vector in the plane of a triangle that leads out of it across an edge.
 fn outward_of(corners: [DVec3; 3], side: Side) -> DVec3 {
     let [a, b, c] = [side, side.next(), side.next().next()].map(|s| corners[s.index()]);
     let along = (b - a).normalize_or_zero();
@@ -129,15 +130,16 @@ fn outward_of(corners: [DVec3; 3], side: Side) -> DVec3 {
     -inward.normalize_or_zero()
 }
 
+/// Returns the unit normal of a triangle.
 fn unit_normal(mesh: &TriMesh, triangle: u32) -> DVec3 {
     let [a, b, c] = mesh.corners(triangle as usize).map(DVec3::from);
     (b - a).cross(c - a).normalize_or_zero()
 }
 
-/// The vertices with several fans of triangles.
+/// Finds the vertices with several fans of triangles.
 ///
 /// # Errors
-/// Where one of them is closed, and the surface around it leaves no room for another.
+/// A vertex with a closed fan and another one: the surface around it leaves no room.
 fn touching_vertices(mesh: &TriMesh, topology: &Topology) -> Result<Vec<u32>, PatchError> {
     let mut touching = Vec::new();
     for v in 0..mesh.vertices.len() as u32 {
@@ -165,8 +167,8 @@ fn touching_vertices(mesh: &TriMesh, topology: &Topology) -> Result<Vec<u32>, Pa
     Ok(touching)
 }
 
-/// Walks the triangles of a fan around `v` in both directions from `first`, as long as `visit` has not seen them.
-/// Returns how many there are, and whether the fan is open.
+/// Walks the triangles of a fan around `v` in both directions from `first`, as long as `visit` has not
+/// seen them. Returns the number of triangles, and whether the fan is open.
 fn fan(
     mesh: &TriMesh,
     topology: &Topology,
@@ -193,8 +195,10 @@ fn fan(
     (size, true)
 }
 
-/// Joins boundary edges to loops. Where fans touch in a vertex, a loop goes on with the next fan's edge across the gap:
-/// the ribbons along the gaps then join the fans to one ring around the vertex, and the solid is 2-manifold there.
+/// Joins boundary edges to loops.
+///
+/// Where fans touch in a vertex, a loop goes on with the next fan's edge across the gap. The strips
+/// along the gaps then join the fans to one ring around the vertex, and the solid is 2-manifold there.
 fn trace(mesh: &TriMesh, topology: &Topology, starts: &[BoundaryEdge], touching: &[u32]) -> Vec<Vec<u32>> {
     // The edge that starts at each vertex with one fan.
     let mut from = vec![usize::MAX; mesh.vertices.len()];
@@ -241,7 +245,7 @@ fn trace(mesh: &TriMesh, topology: &Topology, starts: &[BoundaryEdge], touching:
     loops
 }
 
-/// Triangles around a vertex that are joined by edges.
+/// A fan: triangles around a vertex that are joined by edges.
 struct Fan {
     /// The boundary edge that starts at the vertex.
     first: usize,
@@ -259,6 +263,6 @@ fn sort_around(mesh: &TriMesh, starts: &[BoundaryEdge], v: u32, fans: &mut [Fan]
         let angle = normal.dot(zero.cross(to)).atan2(normal.length() * zero.dot(to));
         if angle < 0.0 { angle + std::f64::consts::TAU } else { angle }
     };
-    // The one with which angles begin is the first.
+    // Angles are counted from the first fan, which stays the first.
     fans[1..].sort_by(|a, b| angle(a).total_cmp(&angle(b)));
 }

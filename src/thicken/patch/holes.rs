@@ -1,8 +1,9 @@
-//! Holes of the patch that the lattice cannot see, and the caps that close them.
+//! Holes of the patch that are too narrow for the lattice, and the caps that close them.
 //!
-//! A hole that is narrower than some voxels has no wall on the lattice: no node lies in it, or its wall grows together with
-//! that of the hole beside it. Such a hole is closed before anything else, by a cap on its own vertices (\[WC13\] section
-//! 4.2 closes holes in the same way). What is thickened then is the patch with its caps.
+//! A hole that is narrower than some voxels has no wall on the lattice: no node lies in it, or its wall
+//! grows together with the wall of the hole next to it. Such a hole is closed before anything else, by
+//! a cap on its own vertices (\[WC13\] section 4.2 closes holes in the same way). The patch with its
+//! caps is thickened then.
 
 use super::boundary::Boundary;
 use super::minimal_triangulation::Polygon;
@@ -15,54 +16,56 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Holes narrower than this, in voxels, are closed at once: there need not be a node in them.
-const UNSEEN: f64 = 2.0;
+/// Width, in voxels, below which a hole is closed at once: there need not be a node in it.
+const NARROW: f64 = 2.0;
 
-/// The same for holes that touch another boundary loop in a vertex: the rod below such a vertex fills three voxels, and a
-/// node must be left.
-const UNSEEN_TOUCHING: f64 = 4.0;
+/// Width, in voxels, below which a hole that touches another boundary loop in a vertex is closed at
+/// once: the pillar below such a vertex fills three voxels, and a node must be left.
+const NARROW_TOUCHING: f64 = 4.0;
 
-/// Holes up to this width in voxels are closed when they have proved to be in the way. Wider ones are shape, and a lattice
-/// that cannot wall them is too coarse.
-const WIDEST: f64 = 12.0;
+/// Maximum width, in voxels, of holes that are closed when they have proved to be in the way. Wider ones
+/// are shape, and a lattice that cannot wall them is too coarse.
+const MAX_CAPPED_WIDTH: f64 = 12.0;
 
-/// What the mean normal along a hole has at least along that of its cap. The rim of a disc has -1, the end of a tube 0, and
-/// neither is a hole.
-const ALIGNED: f64 = 0.5;
+/// Minimum component of the mean normal along a hole in the direction of its cap's normal. The boundary
+/// of a disc has -1, the end of a tube 0, and neither is a hole.
+const MIN_ALIGNMENT: f64 = 0.5;
 
-/// Triangulations of a hole are chosen anew this often without the triangles that meet something: each try forbids one at
-/// least, and most holes have a dozen.
-const TRIES: usize = 30;
+/// Maximum number of triangulations of a hole, each without the triangles that met something before.
+/// Each try forbids one triangle at least, and most holes have a dozen.
+const MAX_TRIES: usize = 30;
 
 /// A boundary loop around a hole.
 #[derive(Clone, Debug)]
 struct Hole {
     polygon: Polygon,
-    /// Four times the area over the length: the diameter of a round one, the side of a square one. In model units.
+    /// Four times the area over the length, in model units: the diameter of a round hole, the edge of a
+    /// square one.
     width: f64,
+    /// Whether the loop touches a boundary loop in a vertex.
     touches: bool,
 }
 
-/// The holes of a patch.
+/// The holes of a patch, by number.
 #[derive(Debug)]
 pub(crate) struct Holes<'a> {
     patch: &'a TriMesh,
     holes: Vec<Hole>,
-    /// The hole of each boundary edge.
+    /// Number of the hole at each boundary edge.
     of_edge: BTreeMap<[u32; 2], usize>,
 }
 
 /// A patch with some of its holes closed.
 #[derive(Debug)]
-pub(crate) struct Capped {
-    /// The patch's triangles, then those of the caps.
+pub(crate) struct CappedPatch {
+    /// The patch's triangles, then the triangles of the caps.
     pub mesh: TriMesh,
     /// A point of each hole that was closed.
-    pub places: Vec<[f64; 3]>,
+    pub capped: Vec<[f64; 3]>,
 }
 
 impl<'a> Holes<'a> {
-    /// The boundary loops of `patch` that are holes in it.
+    /// Finds the boundary loops of `patch` that are holes in it.
     pub fn new(patch: &'a TriMesh, topology: &Topology, boundary: &Boundary) -> Holes<'a> {
         let mut holes = Vec::new();
         let mut of_edge = BTreeMap::new();
@@ -76,29 +79,29 @@ impl<'a> Holes<'a> {
         Holes { patch, holes, of_edge }
     }
 
-    /// The holes that the lattice cannot see.
-    pub fn unseen(&self, voxel: f64) -> BTreeSet<usize> {
-        let is_unseen =
-            |hole: &Hole| hole.width < voxel * if hole.touches { UNSEEN_TOUCHING } else { UNSEEN };
-        (0..self.holes.len()).filter(|&n| is_unseen(&self.holes[n])).collect()
+    /// Returns the holes that are too narrow for a lattice.
+    pub fn too_narrow(&self, voxel: f64) -> BTreeSet<usize> {
+        let is_narrow =
+            |hole: &Hole| hole.width < voxel * if hole.touches { NARROW_TOUCHING } else { NARROW };
+        (0..self.holes.len()).filter(|&n| is_narrow(&self.holes[n])).collect()
     }
 
-    /// The holes that these boundary edges are at, if they are not too wide to be closed.
-    pub fn in_the_way(&self, edges: &[[u32; 2]], voxel: f64) -> BTreeSet<usize> {
+    /// Returns the holes at these boundary edges that are not too wide to be closed.
+    pub fn at_edges(&self, edges: &[[u32; 2]], voxel: f64) -> BTreeSet<usize> {
         let numbers = edges.iter().filter_map(|edge| self.of_edge.get(edge).copied());
-        numbers.filter(|&n| self.holes[n].width < WIDEST * voxel).collect()
+        numbers.filter(|&n| self.holes[n].width < MAX_CAPPED_WIDTH * voxel).collect()
     }
 
-    /// The patch with caps over the given holes, as far as they meet nothing.
+    /// Closes the given holes by caps, as far as the caps meet nothing.
     ///
     /// # Errors
     /// [`Cancelled`].
-    pub fn close(&self, which: &BTreeSet<usize>, run: &RunSettings) -> Result<Capped, Cancelled> {
+    pub fn cap(&self, which: &BTreeSet<usize>, run: &RunSettings) -> Result<CappedPatch, Cancelled> {
         let patch = self.patch;
         let mut mesh = patch.clone();
-        let mut places = Vec::new();
+        let mut capped = Vec::new();
         if which.is_empty() {
-            return Ok(Capped { mesh, places });
+            return Ok(CappedPatch { mesh, capped });
         }
         let tree = BoxTree::new(
             &patch.vertices,
@@ -113,7 +116,7 @@ impl<'a> Holes<'a> {
                 Ok(self.holes[n].cap(patch, &tree))
             })
             .collect::<Result<_, Cancelled>>()?;
-        // Of two caps that meet, the second one goes.
+        // Of two caps that meet, the second one is dropped.
         let mut owners = Vec::new();
         for (n, cap) in caps.iter().enumerate() {
             for &triangle in cap.iter().flatten() {
@@ -138,24 +141,24 @@ impl<'a> Holes<'a> {
         })?;
         let mut pairs: Vec<[usize; 2]> = pairs.into_iter().flatten().collect();
         pairs.sort_unstable();
-        let mut gone = BTreeSet::new();
+        let mut dropped = BTreeSet::new();
         for [p, q] in pairs {
-            if !gone.contains(&p) {
-                gone.insert(q);
+            if !dropped.contains(&p) {
+                dropped.insert(q);
             }
         }
         mesh.triangles.truncate(patch.triangles.len());
-        for (n, cap) in caps.into_iter().enumerate().filter(|(n, _)| !gone.contains(n)) {
+        for (n, cap) in caps.into_iter().enumerate().filter(|(n, _)| !dropped.contains(n)) {
             let Some(cap) = cap else { continue };
-            places.push(self.holes[which[n]].polygon.points[0].to_array());
+            capped.push(self.holes[which[n]].polygon.points[0].to_array());
             mesh.triangles.extend(cap);
         }
-        Ok(Capped { mesh, places })
+        Ok(CappedPatch { mesh, capped })
     }
 }
 
 impl Hole {
-    /// The hole within a boundary loop, if it is one.
+    /// Returns the hole within a boundary loop, if the loop is around one.
     fn new(patch: &TriMesh, topology: &Topology, boundary: &Boundary, around: &[u32]) -> Option<Hole> {
         let vertices: Vec<u32> = around.iter().rev().copied().collect();
         let points: Vec<DVec3> = vertices.iter().map(|&v| DVec3::from(patch.vertices[v as usize])).collect();
@@ -168,13 +171,13 @@ impl Hole {
             length += edge;
             normals += edge * normal_at(patch, topology, [vertices[next], vertices[n]]);
         }
-        let is_hole = normals.dot(area.normalize_or_zero()) > ALIGNED * length;
+        let is_hole = normals.dot(area.normalize_or_zero()) > MIN_ALIGNMENT * length;
         let touches = vertices.iter().any(|v| boundary.touching.binary_search(v).is_ok());
         let polygon = Polygon { vertices, points, forbidden: BTreeSet::new() };
         is_hole.then(|| Hole { polygon, width: 4.0 * area.length() / length, touches })
     }
 
-    /// Triangles over the hole that meet nothing of the patch, and have no edge of it as a diagonal.
+    /// Finds triangles over the hole that meet nothing of the patch, and have no edge of it as a diagonal.
     fn cap(&self, patch: &TriMesh, tree: &BoxTree) -> Option<Vec<[u32; 3]>> {
         let mut polygon = self.polygon.clone();
         let is_taken = |a: u32, b: u32| {
@@ -185,14 +188,14 @@ impl Hole {
             });
             found
         };
-        for _ in 0..TRIES {
-            let places = polygon.least_area(is_taken)?;
-            let triangles: Vec<[u32; 3]> = places.iter().map(|&p| polygon.triangle(p)).collect();
+        for _ in 0..MAX_TRIES {
+            let indices = polygon.minimal_triangulation(is_taken)?;
+            let triangles: Vec<[u32; 3]> = indices.iter().map(|&t| polygon.triangle(t)).collect();
             let mut bad: BTreeSet<[usize; 3]> = BTreeSet::new();
             for (n, &t) in triangles.iter().enumerate() {
                 let meets_own = triangles[..n].iter().any(|&other| do_meet(patch, t, other));
                 if meets_own || meets(patch, tree, t) {
-                    bad.insert(places[n]);
+                    bad.insert(indices[n]);
                 }
             }
             if bad.is_empty() {
@@ -204,7 +207,7 @@ impl Hole {
     }
 }
 
-/// The unit normal of the triangle that runs along a boundary edge.
+/// Returns the unit normal of the triangle that runs along a boundary edge.
 fn normal_at(patch: &TriMesh, topology: &Topology, [a, b]: [u32; 2]) -> DVec3 {
     let has_edge = |&&t: &&u32| {
         let [p, q, r] = patch.triangles[t as usize];
@@ -232,7 +235,8 @@ fn meets(patch: &TriMesh, tree: &BoxTree, t: [u32; 3]) -> bool {
     found
 }
 
-/// Whether two triangles of a cap have more in common than they may: an edge with different neighbours, or a point.
+/// Whether two triangles of a cap have more in common than they may: an edge that both run through the
+/// same way, or a point.
 fn do_meet(patch: &TriMesh, a: [u32; 3], b: [u32; 3]) -> bool {
     let corners = |t: [u32; 3]| t.map(|v| patch.vertices[v as usize]);
     let shared: Vec<u32> = a.into_iter().filter(|v| b.contains(v)).collect();
@@ -249,7 +253,7 @@ fn do_meet(patch: &TriMesh, a: [u32; 3], b: [u32; 3]) -> bool {
 mod tests {
     use super::*;
 
-    /// Cells of a square grid of side 1, turned towards +z.
+    /// Returns cells of width 1 of a square grid, turned towards +z.
     fn cells(n: u32, is_there: impl Fn(u32, u32) -> bool) -> TriMesh {
         let vertices =
             (0..=n).flat_map(|j| (0..=n).map(move |i| [f64::from(i), f64::from(j), 0.0])).collect();
@@ -275,12 +279,12 @@ mod tests {
         with_holes(&patch, |boundary, holes| {
             assert_eq!((boundary.loops.len(), holes.holes.len()), (2, 1));
             assert!((holes.holes[0].width - 1.0).abs() < 1e-12);
-            assert_eq!((holes.unseen(0.51).len(), holes.unseen(0.49).len()), (1, 0));
+            assert_eq!((holes.too_narrow(0.51).len(), holes.too_narrow(0.49).len()), (1, 0));
             let rim = boundary.loops.iter().find(|around| around.len() == 28).unwrap();
             let inner = boundary.loops.iter().find(|around| around.len() == 4).unwrap();
-            assert!(holes.in_the_way(&[[rim[0], rim[1]]], 100.0).is_empty());
-            assert_eq!(holes.in_the_way(&[[inner[0], inner[1]]], 0.1).len(), 1);
-            assert!(holes.in_the_way(&[[inner[0], inner[1]]], 0.08).is_empty(), "too wide");
+            assert!(holes.at_edges(&[[rim[0], rim[1]]], 100.0).is_empty());
+            assert_eq!(holes.at_edges(&[[inner[0], inner[1]]], 0.1).len(), 1);
+            assert!(holes.at_edges(&[[inner[0], inner[1]]], 0.08).is_empty(), "too wide");
         });
     }
 
@@ -290,9 +294,9 @@ mod tests {
         let patch = cells(8, |i, j| (i, j) != (3, 3) && (i, j) != (4, 4));
         with_holes(&patch, |boundary, holes| {
             assert_eq!(boundary.touching.len(), 1);
-            assert_eq!((holes.unseen(0.26).len(), holes.unseen(0.24).len()), (2, 0), "touching");
-            let capped = holes.close(&holes.unseen(1.0), &run).unwrap();
-            assert_eq!(capped.places.len(), 2);
+            assert_eq!((holes.too_narrow(0.26).len(), holes.too_narrow(0.24).len()), (2, 0), "touching");
+            let capped = holes.cap(&holes.too_narrow(1.0), &run).unwrap();
+            assert_eq!(capped.capped.len(), 2);
             assert_eq!(capped.mesh.triangles[..patch.triangles.len()], patch.triangles);
             assert_eq!(capped.mesh.triangles.len(), 2 * 64);
             let topology = Topology::new(&capped.mesh);
@@ -309,8 +313,8 @@ mod tests {
         patch.vertices.extend([[2.6, 2.4, -1.0], [2.6, 2.4, 1.0], [2.4, 2.6, 0.0]]);
         patch.triangles.push([first, first + 1, first + 2]);
         with_holes(&patch, |_, holes| {
-            let capped = holes.close(&holes.unseen(1.0), &run).unwrap();
-            assert!(capped.places.is_empty() && capped.mesh.triangles == patch.triangles);
+            let capped = holes.cap(&holes.too_narrow(1.0), &run).unwrap();
+            assert!(capped.capped.is_empty() && capped.mesh.triangles == patch.triangles);
         });
     }
 }

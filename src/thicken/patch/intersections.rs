@@ -1,33 +1,39 @@
-//! The exact tests of what was not made by the contour alone.
+//! Exact tests of what the contour alone did not make.
 
 use crate::geom::box_tree::BoxTree;
 use crate::geom::predicates::projection_axis;
 use crate::geom::triangle_pair::meeting_point;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};
-use crate::thicken::PatchError;
+use crate::thicken::{PatchError, ThickenError};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 /// Checks that the patch, as it will be written, has area everywhere and does not intersect itself.
-pub(crate) fn check_patch(patch: &TriMesh, run: &RunSettings) -> Result<Result<(), PatchError>, Cancelled> {
+///
+/// # Errors
+/// [`ThickenError::Patch`] with the first fault, or [`ThickenError::Cancelled`].
+pub(crate) fn check_patch(patch: &TriMesh, run: &RunSettings) -> Result<(), ThickenError> {
     let is_flat = |t: &usize| projection_axis(patch.corners(*t)).is_none();
     if let Some(t) = (0..patch.triangles.len()).into_par_iter().find_first(is_flat) {
-        return Ok(Err(PatchError::Degenerate { triangle: t as u32, at: patch.corners(t)[0] }));
+        return Err(PatchError::Degenerate { triangle: t as u32, at: patch.corners(t)[0] }.into());
     }
     let tree =
         BoxTree::new(&patch.vertices, &patch.triangles, (0..patch.triangles.len() as u32).into_par_iter());
-    let found = first_pair(patch, &tree, run)?;
-    Ok(found.map_or(Ok(()), |(triangles, at)| Err(PatchError::Intersects { triangles, at })))
+    match first_pair(patch, &tree, run)? {
+        Some((triangles, at)) => Err(PatchError::Intersects { triangles, at }.into()),
+        None => Ok(()),
+    }
 }
 
-/// Where one in this many triangles is the patch's, or fewer, each of them is looked up; otherwise all pairs are gone through, which
-/// takes a few times as long as looking up one in eight.
-const FEW: usize = 8;
+/// Least number of triangles, for each triangle of the patch, at which each triangle of the patch is
+/// looked up by itself. With fewer, all pairs are gone through, which takes a few times as long as
+/// looking up one in eight.
+const TRIANGLES_PER_LOOKUP: usize = 8;
 
-/// The triangles from number `patch` on that meet one of those before, ascending, each with a point of both.
+/// Finds the triangles from number `patch` on that meet one before, each with a point of both.
 pub(crate) fn meeting_patch(
     mesh: &TriMesh,
     tree: &BoxTree,
@@ -40,7 +46,7 @@ pub(crate) fn meeting_patch(
             found.push((b, at));
         }
     };
-    let found = if (patch as usize) < tree.order().len() / FEW {
+    let found = if (patch as usize) < tree.order().len() / TRIANGLES_PER_LOOKUP {
         let of_patch = |a: u32| {
             run.check()?;
             let [p, q, r] = mesh.corners(a as usize).map(DVec3::from);
@@ -66,15 +72,15 @@ pub(crate) fn meeting_patch(
     Ok(all.into_iter().collect())
 }
 
-/// Two triangles, and a point of both.
-type Found = Option<([u32; 2], [f64; 3])>;
+/// Two triangles that meet, and a point of both.
+type FoundPair = Option<([u32; 2], [f64; 3])>;
 
-/// The first pair, by number, of triangles that meet.
-fn first_pair(mesh: &TriMesh, tree: &BoxTree, run: &RunSettings) -> Result<Found, Cancelled> {
+/// Finds the first pair of triangles that meet, by number.
+fn first_pair(mesh: &TriMesh, tree: &BoxTree, run: &RunSettings) -> Result<FoundPair, Cancelled> {
     let tasks = tree.pairs(
         run,
         || None,
-        |found: &mut Found, a, b| {
+        |found: &mut FoundPair, a, b| {
             if found.is_some_and(|(pair, _)| pair < [a, b]) {
                 return;
             }

@@ -1,4 +1,4 @@
-//! The patch as it comes: its boundary, its holes, and the exact test that it meets nothing.
+//! The patch as it comes: its boundary loops, its holes, and exact tests against intersections.
 
 pub(super) mod boundary;
 pub(super) mod holes;

@@ -1,25 +1,26 @@
-//! Nodes of the lattice that are near some others.
+//! Dilation of a set of nodes on the lattice.
 
 use crate::band::{LeafId, SignField};
 use crate::lattice::{Axis, LeafMask, Z_FIRST, Z_LAST};
 use rayon::prelude::*;
 
-/// How far nodes are from others along each axis at most. The contour's faces at an edge take all edges of the four cells
-/// around it, and the next faces are there, too: with them holes and islands of up to five faces are closed.
+/// Number of nodes that a set grows by along each axis. The contour's faces at an edge take all edges
+/// of the four cells around it, and the next faces are there, too: with them, holes and islands of up
+/// to five faces are closed.
 const STEPS: usize = 3;
 
-/// The nodes at most [`STEPS`] steps along each axis from those of `masks`, leaf by leaf.
-pub(crate) fn near_nodes(signs: &SignField, mut masks: Vec<LeafMask>) -> Vec<LeafMask> {
+/// Returns the nodes at most [`STEPS`] steps along each axis from those of `masks`, leaf by leaf.
+pub(super) fn dilate(signs: &SignField, mut masks: Vec<LeafMask>) -> Vec<LeafMask> {
     let leaves: Vec<LeafId> = signs.leaves().collect();
     for axis in Axis::ALL {
         for _ in 0..STEPS {
             let wider = leaves.par_iter().with_min_len(64).map(|&leaf| {
-                let beside = |step: i32| {
+                let neighbour = |step: i32| {
                     let mut delta = [0; 3];
                     delta[axis as usize] = step;
                     signs.neighbour(leaf, delta).map_or([0; 8], |other| masks[other.0 as usize])
                 };
-                widened(axis, beside(-1), masks[leaf.0 as usize], beside(1))
+                dilate_along(axis, neighbour(-1), masks[leaf.0 as usize], neighbour(1))
             });
             masks = wider.collect();
         }
@@ -27,8 +28,9 @@ pub(crate) fn near_nodes(signs: &SignField, mut masks: Vec<LeafMask>) -> Vec<Lea
     masks
 }
 
-/// The nodes of a leaf's mask, and those next to them and to the nodes of the leaves before and after it along an axis.
-fn widened(axis: Axis, before: LeafMask, own: LeafMask, after: LeafMask) -> LeafMask {
+/// Grows a leaf's mask by one node in both directions of an axis. `before` and `after` are the masks
+/// of the neighbouring leaves.
+fn dilate_along(axis: Axis, before: LeafMask, own: LeafMask, after: LeafMask) -> LeafMask {
     std::array::from_fn(|x| {
         let [low, word, high] = [before[x], own[x], after[x]];
         word | match axis {
@@ -63,7 +65,7 @@ mod tests {
                 let number = node.number_in_leaf();
                 masks[leaf.0 as usize][number >> 6] |= 1 << (number & 63);
             }
-            let wider = near_nodes(&signs, masks);
+            let wider = dilate(&signs, masks);
             for leaf in signs.leaves() {
                 for number in 0..512 {
                     let other = Ijk::in_leaf(signs.origin(leaf), number);

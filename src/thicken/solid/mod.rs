@@ -1,4 +1,4 @@
-//! The solid on a lattice: which nodes are inside (\[WC13\] section 3) and where edges leave it.
+//! The solid on a lattice: nodes inside (\[WC13\] section 3), and crossings of edges with its boundary.
 
 pub(super) mod crossings;
 mod dilate;

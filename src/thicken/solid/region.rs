@@ -1,53 +1,56 @@
-//! The thickened solid as a rule: on which side of which of its faces a point is.
+//! The solid as a rule: the region of space that a point is in.
 //!
 //! ```text
 //!        S  ________________________
-//!  lid      ......................  |     lid: at depth d below S
-//!           |        inside       | |     section: where the closest point leaves the boundary of S
-//!  shell    |_____________________| |     shell: at depth r
+//!  inset    ........................  |     inset: at depth d below S
+//!           |        inside       |   |     section: where the closest point leaves the boundary of S
+//!  shell    |_____________________|   |     shell: at depth r
 //! ```
 //!
-//! What is contoured is \[WC13\] Definition 2 without a layer of depth d below S, the lid, so that no face of the
-//! contour comes near S: the ribbon from the boundary of S to the lid's rim closes the solid.
+//! The contour is that of \[WC13\] Definition 2 without the layer between S and the inset, so that no
+//! face of the contour comes near S. The strip from the boundary of S to the rim of the inset closes
+//! the solid.
 
-use super::vertex_pillars::Rods;
+use super::vertex_pillars::VertexPillars;
 use crate::candidates::CandidateLists;
 use crate::distance::{Sample, SignedDistance};
 use crate::thicken::patch::boundary::Boundary;
 use glam::DVec3;
 
-/// Where a point is.
+/// Region of space, as seen from the solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Place {
-    /// In the solid, below the lid.
+pub(crate) enum Region {
+    /// In the solid, below the inset.
     Inside,
-    /// Nearer to S than the lid, or on the other side of S.
+    /// Nearer to S than the inset, or on the other side of S.
     Above,
     /// Farther from S than the shell.
     Below,
-    /// The closest point is on the boundary of S.
+    /// Beside the solid: the closest point is on the boundary of S.
     Beside,
 }
 
-/// The solid on the negative side of an open or closed mesh.
+/// The solid on the negative side of an open or closed mesh S.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Solid<'a> {
+    /// Distance from S.
     pub distance: &'a SignedDistance<'a>,
+    /// Boundary of S.
     pub boundary: &'a Boundary,
     /// Thickness r, in model units.
     pub thickness: f64,
-    /// Instead of that, the thickness at each vertex of S.
-    pub map: Option<&'a [f64]>,
-    /// Depth of the lid, in model units.
-    pub lid: f64,
-    /// The solid is thickened around vertices in which parts of S touch.
-    pub rods: &'a Rods,
-    /// The triangles near each point.
+    /// Thickness at each vertex of S, in model units, instead of `thickness`.
+    pub thickness_map: Option<&'a [f64]>,
+    /// Depth of the inset, in model units.
+    pub inset_depth: f64,
+    /// Pillars below vertices in which parts of S touch.
+    pub pillars: &'a VertexPillars,
+    /// Triangles of S near each point.
     pub lists: Option<&'a CandidateLists>,
 }
 
 impl Solid<'_> {
-    /// The closest point of S to `p`.
+    /// Finds the closest point of S to `p`. `hint` is a triangle near `p`.
     #[inline]
     pub fn sample(&self, p: DVec3, hint: u32) -> Sample {
         match self.lists.and_then(|lists| lists.at(p.to_array())) {
@@ -59,10 +62,10 @@ impl Solid<'_> {
         }
     }
 
-    /// The thickness below a point of S.
+    /// Returns the thickness below a point of S, in model units.
     #[inline]
     pub fn thickness_at(&self, sample: &Sample) -> f64 {
-        let Some(map) = self.map else { return self.thickness };
+        let Some(map) = self.thickness_map else { return self.thickness };
         let mesh = self.distance.mesh();
         let [a, b, c] = mesh.corners(sample.triangle as usize).map(DVec3::from);
         let values = mesh.triangles[sample.triangle as usize].map(|v| map[v as usize]);
@@ -74,40 +77,41 @@ impl Solid<'_> {
         if whole > 0.0 { mean() } else { values[0] }
     }
 
-    /// Where a point is whose closest point is known.
+    /// Returns the region of a point `p` whose closest point is known.
     #[inline]
-    pub fn place(&self, p: DVec3, sample: &Sample) -> Place {
+    pub fn classify(&self, p: DVec3, sample: &Sample) -> Region {
         let mut depth = -sample.distance;
         if self.boundary.holds(self.distance.mesh(), sample.triangle, sample.feature) {
-            match self.rods.at(p) {
+            match self.pillars.at(p) {
                 Some((at, _)) => depth = depth.copysign(at).min(at),
-                None => return Place::Beside,
+                None => return Region::Beside,
             }
         }
-        if depth < self.lid {
-            Place::Above
+        if depth < self.inset_depth {
+            Region::Above
         } else if depth >= self.thickness_at(sample) {
-            Place::Below
+            Region::Below
         } else {
-            Place::Inside
+            Region::Inside
         }
     }
 
-    /// How far a point below S is beyond the shell, negative above it; `None` where its closest point is on the boundary of S,
-    /// or on the other side.
-    pub fn off_shell(&self, p: DVec3) -> Option<f64> {
-        self.below(p).map(|sample| -sample.distance - self.thickness_at(&sample))
+    /// Returns how far `p` is beyond the shell, in model units, negative above it. `None` where the
+    /// closest point is on the boundary of S, or `p` is not below the inset.
+    pub fn depth_beyond_shell(&self, p: DVec3) -> Option<f64> {
+        self.sample_below_inset(p).map(|sample| -sample.distance - self.thickness_at(&sample))
     }
 
-    /// The point of the shell in line with such a point and its closest point.
-    pub fn onto_shell(&self, p: DVec3) -> Option<DVec3> {
+    /// Projects `p` to the shell, along the line through its closest point. `None` as for
+    /// [`depth_beyond_shell`](Self::depth_beyond_shell).
+    pub fn project_to_shell(&self, p: DVec3) -> Option<DVec3> {
         let along = |sample: Sample| (p - sample.closest) * (self.thickness_at(&sample) / -sample.distance);
-        self.below(p).map(|sample| sample.closest + along(sample))
+        self.sample_below_inset(p).map(|sample| sample.closest + along(sample))
     }
 
-    fn below(&self, p: DVec3) -> Option<Sample> {
+    fn sample_below_inset(&self, p: DVec3) -> Option<Sample> {
         let sample = self.sample(p, 0);
-        let is_below = sample.distance < -self.lid
+        let is_below = sample.distance < -self.inset_depth
             && !self.boundary.holds(self.distance.mesh(), sample.triangle, sample.feature);
         is_below.then_some(sample)
     }

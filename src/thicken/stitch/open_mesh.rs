@@ -1,54 +1,55 @@
-//! The contour without the faces below the patch: an open mesh whose rims run along the boundary of S.
+//! The contour without the faces of the inset: an open mesh whose rims run along the boundary of S.
 
 use crate::band::SignField;
 use crate::contour::{Precision, contour_by_edge};
-use crate::error::Error;
 use crate::geom::triangle::Side;
 use crate::lattice::Lattice;
 use crate::mesh::{Topology, TriMesh};
 use crate::run::RunSettings;
+use crate::thicken::ThickenError;
 use crate::thicken::solid::crossings::SolidCrossings;
-use crate::thicken::solid::edge_search::Part;
+use crate::thicken::solid::edge_search::SolidFace;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What [`OpenMesh::close`] may do.
+/// The changes that [`OpenMesh::remove_strays`] may make.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Change {
-    /// Keep triangles, or leave more of them out.
-    Both,
-    /// Leave more of them out.
+    /// Triangles are taken back, or more of them left out.
+    KeepOrDrop,
+    /// More triangles are left out.
     Drop,
 }
 
-/// Section and shell: the triangles of a contour that are kept.
+/// Section and shell: a contour of which some triangles are kept.
 #[derive(Debug)]
 pub(crate) struct OpenMesh {
     /// The whole contour.
     pub mesh: TriMesh,
+    /// Topology of the whole contour.
     pub topology: Topology,
-    /// Per triangle whether it is in the result.
+    /// Per triangle, whether it is kept.
     pub kept: Vec<bool>,
-    /// Per triangle the number of the lattice edge that it is at.
+    /// Per triangle, the number of its lattice edge.
     pub edges: Vec<u32>,
-    /// All triangles at rims are among these, which are few beside all. In any order, some more than once.
+    /// Few triangles, with all that are at rims among them; in any order, some more than once.
     near_rims: Vec<u32>,
 }
 
 impl OpenMesh {
-    /// Contours the solid and leaves out the lid.
+    /// Contours the solid and leaves out the inset.
     pub fn new(
         signs: &SignField,
         found: &SolidCrossings,
         lattice: Lattice,
         precision: Precision,
         run: &RunSettings,
-    ) -> Result<OpenMesh, Error> {
+    ) -> Result<OpenMesh, ThickenError> {
         let (mesh, sizes) = contour_by_edge(signs, &found.crossings, lattice, precision, run)?;
         let edges: Vec<u32> =
             (0u32..).zip(&sizes).flat_map(|(n, &size)| std::iter::repeat_n(n, usize::from(size))).collect();
         let topology = run.install(|| Topology::new(&mesh));
-        let kept: Vec<bool> = edges.iter().map(|&n| found.parts[n as usize] != Part::Lid).collect();
+        let kept: Vec<bool> = edges.iter().map(|&n| found.faces[n as usize] != SolidFace::Inset).collect();
         let mut open = OpenMesh { mesh, topology, kept, edges, near_rims: Vec::new() };
         let count = open.mesh.vertices.len() as u32;
         let at_rim: Vec<u32> =
@@ -58,7 +59,7 @@ impl OpenMesh {
         Ok(open)
     }
 
-    /// Leaves out some more triangles, and `rings` of those around them.
+    /// Leaves out these triangles, and `rings` rings of triangles around them.
     pub fn drop_around(&mut self, triangles: impl IntoIterator<Item = usize>, rings: usize) {
         let mut front: Vec<usize> = triangles.into_iter().collect();
         let mut at_rim = Vec::new();
@@ -86,7 +87,7 @@ impl OpenMesh {
         around.any(|kept| Some(kept) != first)
     }
 
-    /// Leaves out what would hang on a rim by one of these vertices alone.
+    /// Leaves out triangles that would hang on a rim by one of these vertices alone.
     fn open_pinches(&mut self, mut at_rim: Vec<u32>) {
         while let Some(v) = at_rim.pop() {
             let around = self.topology.around_vertex(v).to_vec();
@@ -104,17 +105,17 @@ impl OpenMesh {
         }
     }
 
-    /// Leaves out a triangle. Says whether it was there.
+    /// Leaves out a triangle. Returns whether it was kept before.
     fn drop(&mut self, t: usize) -> bool {
         let was_kept = std::mem::replace(&mut self.kept[t], false);
         if was_kept {
-            self.changed(t as u32);
+            self.record_change(t as u32);
         }
         was_kept
     }
 
-    /// Remembers that rims may have come to a triangle and those beside it.
-    fn changed(&mut self, t: u32) {
+    /// Records that rims may have come to a triangle and its neighbours.
+    fn record_change(&mut self, t: u32) {
         self.near_rims.push(t);
         for side in Side::ALL {
             self.near_rims.extend(self.topology.around_edge(t, side).skip(1).map(|(other, _)| other));
@@ -127,71 +128,89 @@ impl OpenMesh {
             && self.topology.around_edge(t, side).nth(1).is_none_or(|(other, _)| !self.kept[other as usize])
     }
 
-    /// Closes the holes that these rims are around, and drops the islands that they bound: those parts of the contour,
-    /// left out or not, that have no other rim. Says whether there were any.
-    pub fn close(&mut self, rims: &[Vec<u32>], wanted: impl Fn(usize) -> bool, change: Change) -> bool {
-        let mut is_wanted = vec![true; self.mesh.vertices.len()];
-        for (_, rim) in rims.iter().enumerate().filter(|&(n, _)| !wanted(n)) {
-            rim.iter().for_each(|&v| is_wanted[v as usize] = false);
+    /// Closes the holes within stray rims, and drops the islands within them. Returns whether there were
+    /// any.
+    ///
+    /// A hole or an island is a component of the triangles that are left out, or kept, without another
+    /// rim.
+    pub fn remove_strays(
+        &mut self,
+        rims: &[Vec<u32>],
+        is_stray: impl Fn(usize) -> bool,
+        change: Change,
+    ) -> bool {
+        let mut may_have = vec![true; self.mesh.vertices.len()];
+        for (_, rim) in rims.iter().enumerate().filter(|&(n, _)| !is_stray(n)) {
+            rim.iter().for_each(|&v| may_have[v as usize] = false);
         }
-        let mut parts = vec![0; self.kept.len()];
+        let mut components = vec![0; self.kept.len()];
         let mut flips = Vec::new();
         let mut number = 0;
-        for (_, rim) in rims.iter().enumerate().filter(|&(n, _)| wanted(n)) {
+        for (_, rim) in rims.iter().enumerate().filter(|&(n, _)| is_stray(n)) {
             for &start in rim.iter().flat_map(|&v| self.topology.around_vertex(v)) {
-                if parts[start as usize] != 0 || change == Change::Drop && !self.kept[start as usize] {
+                if components[start as usize] != 0 || change == Change::Drop && !self.kept[start as usize] {
                     continue;
                 }
                 number += 1;
-                flips.extend(self.part_of(start, number, &mut parts, &is_wanted).unwrap_or_default());
+                let component = self.component_of(start, number, &mut components, &may_have);
+                flips.extend(component.unwrap_or_default());
             }
         }
-        // Holes first: an island beside one is no island then.
+        // Holes first: an island next to one is no island then.
         if flips.iter().any(|&t| !self.kept[t as usize]) {
             flips.retain(|&t| !self.kept[t as usize]);
         }
         let found = !flips.is_empty();
         for t in flips {
             self.kept[t as usize] = !self.kept[t as usize];
-            self.changed(t);
+            self.record_change(t);
         }
         found
     }
 
-    /// The triangles joined to one by edges that are kept, or not, as it is; `None` when a vertex of theirs is at a rim that is
-    /// not wanted. They get `number` in `parts`, where 0 stands for no part. Most of a large part is not looked at: what
-    /// comes from another side to a part that was given up belongs to it.
-    fn part_of(&self, start: u32, number: u32, parts: &mut [u32], is_wanted: &[bool]) -> Option<Vec<u32>> {
+    /// Collects the component of `start`: the triangles joined to it by edges that are kept, or left out,
+    /// as `start` is. `None` when it has a vertex that it may not have.
+    ///
+    /// The triangles get `number` in `components`, where 0 stands for none. Most of a large component is
+    /// not looked at: a walk that comes to a component that was given up belongs to it.
+    fn component_of(
+        &self,
+        start: u32,
+        number: u32,
+        components: &mut [u32],
+        may_have: &[bool],
+    ) -> Option<Vec<u32>> {
         let kept = self.kept[start as usize];
-        let mut part = vec![start];
-        parts[start as usize] = number;
+        let mut component = vec![start];
+        components[start as usize] = number;
         let mut next = 0;
-        while let Some(&t) = part.get(next) {
+        while let Some(&t) = component.get(next) {
             next += 1;
             let corners = self.mesh.triangles[t as usize];
-            if !corners.into_iter().all(|v| is_wanted[v as usize]) {
+            if !corners.into_iter().all(|v| may_have[v as usize]) {
                 return None;
             }
             for side in Side::ALL {
-                let mut beside = self.topology.around_edge(t, side).skip(1).peekable();
-                // The rest of a large part of the lid is not there.
-                beside.peek()?;
-                for (other, _) in beside {
-                    if self.kept[other as usize] != kept || parts[other as usize] == number {
+                let mut neighbours = self.topology.around_edge(t, side).skip(1).peekable();
+                // The rest of a large component of the inset was not contoured.
+                neighbours.peek()?;
+                for (other, _) in neighbours {
+                    if self.kept[other as usize] != kept || components[other as usize] == number {
                         continue;
                     }
-                    if parts[other as usize] != 0 {
+                    if components[other as usize] != 0 {
                         return None;
                     }
-                    parts[other as usize] = number;
-                    part.push(other);
+                    components[other as usize] = number;
+                    component.push(other);
                 }
             }
         }
-        Some(part)
+        Some(component)
     }
 
-    /// The vertices of each rim, in the direction in which the kept triangles run through its edges.
+    /// Returns the vertices of each rim, in the direction in which the kept triangles run through its
+    /// edges.
     pub fn rims(&self) -> Vec<Vec<u32>> {
         let mut near = self.near_rims.clone();
         near.sort_unstable();

@@ -1,58 +1,62 @@
-//! Lids over small rims that run around nothing.
+//! Caps over small rims that run around no boundary loop.
 //!
-//! Where sheets are nearer to each other than a voxel, or the walls of two holes meet, the lattice can leave a hole of a
-//! few triangles between section and shell. It is closed by its minimal-area triangulation (\[WC13\] section 4.2).
+//! Where sheets are nearer to each other than a voxel, or the walls of two holes meet, the lattice can
+//! leave a hole of a few triangles between section and shell. Its minimal-area triangulation closes it
+//! (\[WC13\] section 4.2).
 
-use super::strip_fitting::{Around, Conflict};
+use super::strip_fitting::{Conflict, Fit, Surroundings};
 use crate::geom::triangle_pair::meeting_point;
 use crate::run::{Cancelled, RunSettings};
 use crate::thicken::patch::minimal_triangulation::Polygon;
 use glam::DVec3;
 
-/// Vertices up to which a rim is closed by a lid. What is larger is no flaw of the lattice, but shape.
-pub(crate) const MOST: usize = 24;
+/// Maximum number of vertices of a rim that a cap closes. A larger rim is no flaw of the lattice, but
+/// shape.
+pub(super) const MAX_RIM_VERTICES: usize = 24;
 
-/// Triangulations of a rim are chosen anew this often without the triangles that meet something: each try forbids one at
-/// least.
-const TRIES: usize = 60;
+/// Maximum number of triangulations of a rim, each without the triangles that met something before. Each
+/// try forbids one triangle at least.
+const MAX_TRIES: usize = 60;
 
-impl Around<'_> {
-    /// Adds lids over these rims to a strip, or says where they would meet something.
-    pub fn fit_lids(
+impl Surroundings<'_> {
+    /// Adds caps over these rims to the triangles of strips, or returns the conflicts.
+    pub fn fit_caps(
         &self,
         rims: &[Polygon],
-        mut strip: Vec<[u32; 3]>,
+        mut triangles: Vec<[u32; 3]>,
         run: &RunSettings,
-    ) -> Result<Result<Vec<[u32; 3]>, Vec<Conflict>>, Cancelled> {
+    ) -> Result<Fit, Cancelled> {
         let mut conflicts = Vec::new();
         for rim in rims {
             run.check()?;
             let mut polygon = rim.clone();
-            match self.lid(&mut polygon, &strip) {
-                Some(lid) => strip.extend(lid),
+            match self.cap(&mut polygon, &triangles) {
+                Some(cap) => triangles.extend(cap),
                 None => {
-                    let mut section = Vec::new();
-                    for &places in &polygon.forbidden {
-                        self.meeting(polygon.triangle(places), |n| section.extend(n.checked_sub(self.patch)));
+                    let mut contour = Vec::new();
+                    for &indices in &polygon.forbidden {
+                        let triangle = polygon.triangle(indices);
+                        self.meeting(triangle, |n| contour.extend(n.checked_sub(self.patch)));
                     }
                     let at = rim.points[0].to_array();
-                    conflicts.push(Conflict { rim: rim.vertices.clone(), section, at, ribbon: None });
+                    conflicts.push(Conflict { rim: rim.vertices.clone(), contour, at, strip: None });
                 }
             }
         }
-        Ok(if conflicts.is_empty() { Ok(strip) } else { Err(conflicts) })
+        Ok(if conflicts.is_empty() { Fit::Triangles(triangles) } else { Fit::Conflicts(conflicts) })
     }
 
-    /// Triangles over a rim that meet nothing. What they must not be is added to the polygon.
-    fn lid(&self, polygon: &mut Polygon, strip: &[[u32; 3]]) -> Option<Vec<[u32; 3]>> {
-        for _ in 0..TRIES {
-            let places = polygon.least_area(|a, b| self.is_edge(a, b, strip))?;
-            let triangles: Vec<[u32; 3]> = places.iter().map(|&p| polygon.triangle(p)).collect();
+    /// Finds triangles over a rim that meet nothing. Triangles that met something are forbidden in
+    /// `polygon` afterwards.
+    fn cap(&self, polygon: &mut Polygon, strips: &[[u32; 3]]) -> Option<Vec<[u32; 3]>> {
+        for _ in 0..MAX_TRIES {
+            let indices = polygon.minimal_triangulation(|a, b| self.is_edge(a, b, strips))?;
+            let triangles: Vec<[u32; 3]> = indices.iter().map(|&t| polygon.triangle(t)).collect();
             let mut bad = Vec::new();
             for (n, &t) in triangles.iter().enumerate() {
-                let before = triangles[..n].iter().chain(strip);
+                let before = triangles[..n].iter().chain(strips);
                 if self.meets(t) || before.into_iter().any(|&other| self.do_meet(t, other)) {
-                    bad.push(places[n]);
+                    bad.push(indices[n]);
                 }
             }
             if bad.is_empty() {
@@ -75,9 +79,9 @@ impl Around<'_> {
         !apart && meeting_point(a, pa, b, pb).is_some()
     }
 
-    /// Whether two vertices have an edge in what is there, or in the strip.
-    fn is_edge(&self, a: u32, b: u32, strip: &[[u32; 3]]) -> bool {
-        let mut found = strip.iter().any(|t| t.contains(&a) && t.contains(&b));
+    /// Whether two vertices have an edge in the surroundings or in the strips.
+    fn is_edge(&self, a: u32, b: u32, strips: &[[u32; 3]]) -> bool {
+        let mut found = strips.iter().any(|t| t.contains(&a) && t.contains(&b));
         self.tree.near(DVec3::from(self.mesh.vertices[a as usize]), 0.0, |n| {
             let n = n as usize;
             let t = self.mesh.triangles[n];
