@@ -5,7 +5,7 @@ use super::surface::OffsetSurface;
 use super::{OffsetError, OffsetSettings, OffsetStatistics};
 use crate::band::narrow_band::{self, BandStore, NarrowBand};
 use crate::band::{BandSettings, NearTriangles, grid_nodes};
-use crate::contour::{ContourSettings, STRAY, SlabContour, contour_slab};
+use crate::contour::{ContourSettings, MAX_TRIANGLE_REACH, SlabContour, contour_slab};
 use crate::distance::SignedDistance;
 use crate::edge::{EdgeNumbers, EdgeSettings, RootMethod, solve_by};
 use crate::geom::aabb::Aabb;
@@ -53,7 +53,7 @@ pub(super) fn on_slab(
     let contour = run.install(|| contour.into_ordered());
     let triangles = contour.firsts.windows(2).map(|ends| ends[0]..ends[1]);
     let leaves = signs.leaves().map(|leaf| signs.origin(leaf)).zip(triangles);
-    let lost = subvoxel::confirm_missed(suspects, &contour.mesh, leaves, STRAY, run)?;
+    let lost = subvoxel::confirm_missed(suspects, &contour.mesh, leaves, MAX_TRIANGLE_REACH, run)?;
     statistics.contour += contour.statistics;
     statistics.times.contour += started.elapsed().as_secs_f64();
     Ok(Some((contour, lost)))

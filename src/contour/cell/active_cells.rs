@@ -5,7 +5,7 @@
 
 use super::case_table::{CaseId, CaseTable, FaceChoice};
 use crate::band::{LeafId, SignField};
-use crate::contour::{ContourError, TooManyVertices};
+use crate::contour::error::{ContourError, TooManyVertices};
 use crate::lattice::{LeafMask, Z_FIRST, Z_LAST, bits};
 use crate::run::{RunSettings, SHARE};
 use rayon::prelude::*;

@@ -1,21 +1,22 @@
-//! What a patch changed.
+//! The changes that a patch makes to the mesh.
 
-type Point = [f64; 3];
-
-/// What a patch changed, by numbers of the mesh. Vertices and triangles that it added are numbered on from
-/// [`NEW_VERTEX`] and [`NEW_TRIANGLE`].
+/// The changes of a patch, by numbers of the mesh.
+///
+/// Vertices and triangles that the patch added are numbered on from [`NEW_VERTEX`] and
+/// [`NEW_TRIANGLE`].
 #[derive(Debug, Default)]
 pub struct Changes {
-    /// New positions of vertices; the last one counts.
-    pub moved: Vec<(u32, Point)>,
-    /// The vertices of triangles that have others, or moved ones; `None` for those that are gone. The last ones count.
+    /// New positions of vertices. Of several for one vertex the last one counts.
+    pub moved: Vec<(u32, [f64; 3])>,
+    /// The vertices of changed triangles, or of triangles with moved vertices; `None` for removed
+    /// triangles. Of several for one triangle the last one counts.
     pub triangles: Vec<(usize, Option<[u32; 3]>)>,
-    /// Vertices added.
+    /// The number of added vertices.
     pub new_vertices: u32,
-    /// Triangles added.
+    /// The number of added triangles.
     pub new_triangles: usize,
-    /// Vertices that are gone.
-    pub gone_vertices: Vec<u32>,
+    /// The removed vertices.
+    pub removed_vertices: Vec<u32>,
 }
 
 /// The number of the first vertex that a patch adds.

@@ -1,38 +1,30 @@
-//! The finished mesh leaf by leaf: what belongs to a part of the lattice is one piece of it.
+//! The finished mesh in the order of its leaves: a part of the lattice is one range of it.
 //!
-//! While it is made, a mesh has its vertices by kind, and what changes add at the end. That order depends on the whole
-//! lattice. In the order of leaves, the vertices and triangles of some leaves stand together, wherever the rest is made.
+//! During construction a mesh has its vertices by kind, with added ones at the end. That order depends
+//! on the whole lattice. In the order of leaves, the vertices and triangles of consecutive leaves stand
+//! together, wherever the rest is made.
 
-use super::compact::{move_pieces, push_piece};
+use super::compact::{push_range, shift_ranges, split_slices};
+use super::leaf_mesh::{LeafMesh, VertexRun};
 use crate::band::LeafId;
-use crate::contour::optimize::LeafMesh;
 use crate::mesh::TriMesh;
 use crate::run::SHARE;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Vertices with consecutive numbers that belong to one leaf.
-#[derive(Clone, Debug)]
-pub struct VertexRun {
-    /// The leaf.
-    pub leaf: LeafId,
-    /// Their numbers.
-    pub numbers: Range<u32>,
-}
-
 /// A mesh in the order of its leaves.
 #[derive(Debug)]
 pub struct OrderedMesh {
-    /// Vertices and triangles by leaf, those of a leaf in the order in which they were made.
+    /// The mesh, with vertices and triangles by leaf, within a leaf in the order of their making.
     pub mesh: TriMesh,
-    /// By leaf the number of its first vertex, and the number of all at the end.
+    /// The number of the first vertex of each leaf, and the number of all at the end.
     vertices: Vec<usize>,
-    /// The same for triangles.
+    /// The number of the first triangle of each leaf, and the number of all at the end.
     pub triangles: Vec<usize>,
 }
 
 impl OrderedMesh {
-    /// The vertices and the triangles of consecutive leaves.
+    /// Returns the ranges of the vertices and of the triangles of consecutive leaves.
     pub fn of_leaves(&self, leaves: Range<usize>) -> (Range<usize>, Range<usize>) {
         let of = |firsts: &[usize]| firsts[leaves.start]..firsts[leaves.end];
         (of(&self.vertices), of(&self.triangles))
@@ -40,17 +32,17 @@ impl OrderedMesh {
 }
 
 impl LeafMesh {
-    /// The mesh without what is gone, leaf by leaf.
+    /// Orders the mesh by leaves, without removed vertices and triangles.
     pub fn into_ordered(mut self) -> OrderedMesh {
-        self.gone.sort_unstable();
-        let leaves = self.ranges.len() - 1;
+        self.removed.sort_unstable();
+        let leaves = self.firsts.len() - 1;
         // Runs follow each other in the order in which their vertices were made.
-        let gone_in = |run: &VertexRun| {
-            let below = |v: u32| self.gone.partition_point(|&g| g < v);
-            &self.gone[below(run.numbers.start)..below(run.numbers.end)]
+        let removed_in = |run: &VertexRun| {
+            let below = |v: u32| self.removed.partition_point(|&r| r < v);
+            &self.removed[below(run.numbers.start)..below(run.numbers.end)]
         };
-        let left = |run: &VertexRun| run.numbers.len() - gone_in(run).len();
-        // Stable: cell vertices, face vertices, edge vertices, then those that were added.
+        let left = |run: &VertexRun| run.numbers.len() - removed_in(run).len();
+        // The sort is stable: cell vertices, face vertices, edge vertices, then added vertices.
         let mut by_leaf: Vec<usize> = (0..self.runs.len()).collect();
         by_leaf.sort_by_key(|&n| self.runs[n].leaf);
         let mut starts = vec![0; self.runs.len()];
@@ -63,14 +55,13 @@ impl LeafMesh {
         }
         firsts.resize(leaves + 1, next);
         let mut numbers = vec![0; self.mesh.vertices.len()];
-        let parts =
-            crate::contour::vertex::split(&mut numbers, self.runs.iter().map(|run| run.numbers.len()));
+        let parts = split_slices(&mut numbers, self.runs.iter().map(|run| run.numbers.len()));
         parts.into_par_iter().zip(&self.runs).zip(&starts).with_min_len(16).with_max_len(SHARE).for_each(
             |((part, run), &start)| {
-                let mut gone = gone_in(run).iter().peekable();
+                let mut removed = removed_in(run).iter().peekable();
                 let mut next = start as u32;
                 for (number, old) in part.iter_mut().zip(run.numbers.clone()) {
-                    if gone.next_if_eq(&&old).is_none() {
+                    if removed.next_if_eq(&&old).is_none() {
                         *number = next;
                         next += 1;
                     }
@@ -78,17 +69,17 @@ impl LeafMesh {
             },
         );
         let vertices = std::mem::take(&mut self.mesh.vertices);
-        let vertices = in_order(vertices, next, &self.runs, &starts, gone_in);
+        let vertices = in_order(vertices, next, &self.runs, &starts, removed_in);
 
         let of_leaf = |leaf: usize| self.triangles(LeafId(leaf as u32));
         let counts: Vec<usize> = (0..leaves as u32).map(|leaf| self.count(LeafId(leaf))).collect();
         let mut ends = vec![0; leaves + 1];
         for (leaf, count) in counts.iter().enumerate() {
-            debug_assert_eq!(*count, of_leaf(leaf).count(), "a triangle went unseen");
+            debug_assert_eq!(*count, of_leaf(leaf).count(), "a triangle was missed");
             ends[leaf + 1] = ends[leaf] + count;
         }
         let mut triangles = vec![[0; 3]; ends[leaves]];
-        let parts = crate::contour::vertex::split(&mut triangles, counts.into_iter());
+        let parts = split_slices(&mut triangles, counts.into_iter());
         parts.into_par_iter().enumerate().with_min_len(16).with_max_len(SHARE).for_each(|(leaf, part)| {
             for (to, number) in part.iter_mut().zip(of_leaf(leaf)) {
                 *to = self.mesh.triangles[number].map(|v| numbers[v as usize]);
@@ -98,37 +89,40 @@ impl LeafMesh {
     }
 }
 
-/// The `count` vertices of `runs` that are not gone, where each run begins in `starts`; `gone_in` says which are gone.
+/// Returns the `count` vertices of `runs` that are left, by leaf.
+///
+/// `starts` has the new number of the first vertex of each run, `removed_in` the removed vertices of a run.
 fn in_order<'a>(
     mut vertices: Vec<[f64; 3]>,
     count: usize,
     runs: &[VertexRun],
     starts: &[usize],
-    gone_in: impl Fn(&VertexRun) -> &'a [u32],
+    removed_in: impl Fn(&VertexRun) -> &'a [u32],
 ) -> Vec<[f64; 3]> {
-    // The first runs, one for each leaf with cells, have nearly all vertices, and stay in order: they are moved where they
-    // are, in one piece as far as they go the same way, and the others put between them.
+    // The first runs, one for each leaf with cells, have nearly all vertices, and stay in order. They are
+    // shifted where they are, in one range as far as the shift is the same, and the others put between
+    // them.
     let ascending = runs.windows(2).take_while(|pair| pair[0].leaf < pair[1].leaf).count() + 1;
     let (first_runs, others) = runs.split_at(ascending.min(runs.len()));
-    let pieces = |run: &VertexRun| {
-        let ends = gone_in(run).iter().copied().chain([run.numbers.end]);
+    let ranges = |run: &VertexRun| {
+        let ends = removed_in(run).iter().copied().chain([run.numbers.end]);
         let mut from = run.numbers.start;
         ends.map(move |end| std::mem::replace(&mut from, end + 1)..end)
     };
     let mut moves: Vec<(Range<usize>, usize)> = Vec::new();
     for (run, &start) in first_runs.iter().zip(starts) {
         let mut to = start;
-        for piece in pieces(run).map(|piece| piece.start as usize..piece.end as usize) {
-            push_piece(&mut moves, piece.clone(), to);
-            to += piece.len();
+        for range in ranges(run).map(|range| range.start as usize..range.end as usize) {
+            push_range(&mut moves, range.clone(), to);
+            to += range.len();
         }
     }
     let first_of_others = others.first().map_or(vertices.len(), |run| run.numbers.start as usize);
     let rest = vertices.split_off(first_of_others);
     vertices.resize(count.max(first_of_others), [0.0; 3]);
-    move_pieces(&mut vertices, &moves);
+    shift_ranges(&mut vertices, &moves);
     for (run, &start) in others.iter().zip(&starts[first_runs.len()..]) {
-        let there = pieces(run).flatten().map(|v| rest[v as usize - first_of_others]);
+        let there = ranges(run).flatten().map(|v| rest[v as usize - first_of_others]);
         for (to, vertex) in vertices[start..].iter_mut().zip(there) {
             *to = vertex;
         }

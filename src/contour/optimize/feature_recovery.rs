@@ -11,10 +11,11 @@
 use super::collapse::Arrival;
 use super::optimizer::{Editor, mix};
 use super::patch::Bounds;
-use super::schedule::LeafMesh;
+use super::schedule::for_each_patch;
 use crate::contour::feature::Sides;
 use crate::contour::implicit_surface::Surface;
-use crate::contour::vertex::Cells;
+use crate::contour::mesh::LeafMesh;
+use crate::contour::vertex::{Cells, Relocation};
 use crate::run::{Cancelled, RunSettings};
 
 type Point = [f64; 3];
@@ -28,15 +29,6 @@ const SPLITS_PER_CELL: usize = 4;
 
 /// Shares of the way to its place that a vertex goes if it cannot go all of it.
 const SHARES: [f64; 4] = [0.98, 0.9, 0.75, 0.5];
-
-/// Where a vertex ought to be.
-#[derive(Clone, Copy, Debug)]
-pub struct Wish {
-    /// The vertex.
-    pub vertex: u32,
-    /// Its own place, rounded; `None` when the surface is far there or around it.
-    pub place: Option<Point>,
-}
 
 /// What became of the wishes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -75,7 +67,7 @@ pub const STAGES: [Stage; 3] = [Stage::Grant, Stage::Mend, Stage::Mend];
 pub fn recover(
     cells: &Cells<'_>,
     surface: &dyn Surface,
-    wishes: &[Vec<Wish>],
+    wishes: &[Vec<Relocation>],
     mesh: &mut LeafMesh,
     run: &RunSettings,
 ) -> Result<Recovered, Cancelled> {
@@ -84,23 +76,25 @@ pub fn recover(
     let mut open: Vec<(u64, bool)> = wishes.iter().map(|w| (0, !w.is_empty())).collect();
     for stage in STAGES {
         let mut next = open.clone();
-        mesh.in_rounds(
-            cells,
-            cells.signs.leaves().filter(|leaf| open[leaf.0 as usize].1),
+        for_each_patch(
+            mesh,
+            &cells.context,
+            cells.context.signs.leaves().filter(|leaf| open[leaf.0 as usize].1),
             run,
             |mesh, leaf| {
-                let places = |w: &Wish| w.place.into_iter().chain([mesh.mesh.vertices[w.vertex as usize]]);
+                let places =
+                    |w: &Relocation| w.target.into_iter().chain([mesh.mesh.vertices[w.vertex as usize]]);
                 Some(Bounds::around(wishes[leaf.0 as usize].iter().flat_map(places)))
             },
             |leaf, patch| {
                 let mut editor = Editor::new(patch, surface, cells, TOLERANCE, true);
-                editor.splits_left = (SPLITS_PER_CELL * cells.numbers.range(leaf).len()) as u64;
+                editor.splits_left = (SPLITS_PER_CELL * cells.context.numbers.range(leaf).len()) as u64;
                 let done = editor.grant_all(&wishes[leaf.0 as usize], stage);
                 (editor.patch, (leaf, done))
             },
             |(leaf, (done, is_open))| {
                 next[leaf.0 as usize] = (done.refused, is_open);
-                if !cells.owns(leaf) {
+                if !cells.context.owns(leaf) {
                     return;
                 }
                 recovered.moved += done.moved;
@@ -112,14 +106,14 @@ pub fn recover(
         )?;
         open = next;
     }
-    let owned = cells.signs.leaves().zip(&open).filter(|(leaf, _)| cells.owns(*leaf));
+    let owned = cells.context.signs.leaves().zip(&open).filter(|(leaf, _)| cells.context.owns(*leaf));
     recovered.refused = owned.map(|(_, (refused, _))| refused).sum();
     Ok(recovered)
 }
 
 impl Editor<'_> {
     /// What was done, and whether something is left to do.
-    fn grant_all(&mut self, wishes: &[Wish], stage: Stage) -> (Recovered, bool) {
+    fn grant_all(&mut self, wishes: &[Relocation], stage: Stage) -> (Recovered, bool) {
         let mut recovered = Recovered::default();
         let mut open = self.open(wishes);
         self.move_all(wishes, &mut open, &mut recovered);
@@ -153,11 +147,11 @@ impl Editor<'_> {
     }
 
     /// The vertices that are not where they belong, corners first, since creases can go around them.
-    fn open(&mut self, wishes: &[Wish]) -> Vec<(Wish, Point)> {
-        let mut open: Vec<(Wish, Point)> = Vec::with_capacity(wishes.len());
+    fn open(&mut self, wishes: &[Relocation]) -> Vec<(Relocation, Point)> {
+        let mut open: Vec<(Relocation, Point)> = Vec::with_capacity(wishes.len());
         for wish in wishes {
             let Some(position) = self.patch.position(wish.vertex) else { continue };
-            let place = wish.place.or_else(|| self.place_on_surface(wish.vertex));
+            let place = wish.target.or_else(|| self.place_on_surface(wish.vertex));
             open.extend(place.filter(|p| *p != position).map(|place| (*wish, place)));
         }
         open.sort_by_key(|(wish, _)| !self.is_corner(wish.vertex));
@@ -165,7 +159,12 @@ impl Editor<'_> {
     }
 
     /// Moves vertices, and flips edges around them.
-    fn move_all(&mut self, wishes: &[Wish], open: &mut Vec<(Wish, Point)>, recovered: &mut Recovered) {
+    fn move_all(
+        &mut self,
+        wishes: &[Relocation],
+        open: &mut Vec<(Relocation, Point)>,
+        recovered: &mut Recovered,
+    ) {
         // A move can be in the way of another one, and an edge in the way of either.
         for _ in 0..2 {
             let before = open.len();
@@ -181,7 +180,7 @@ impl Editor<'_> {
     }
 
     /// Brings vertices to their places by merging what is in the way there.
-    fn make_way(&mut self, open: &mut Vec<(Wish, Point)>, recovered: &mut Recovered) {
+    fn make_way(&mut self, open: &mut Vec<(Relocation, Point)>, recovered: &mut Recovered) {
         open.retain(|(wish, place)| {
             let Some((vertex, arrival)) = self.reach(wish.vertex, *place) else { return true };
             recovered.moved += 1;

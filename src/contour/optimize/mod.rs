@@ -8,6 +8,6 @@ mod patch;
 mod schedule;
 mod tolerance;
 
-pub use feature_recovery::{STAGES as RECOVERY_STAGES, Wish, recover};
-pub use schedule::{AT_CUT, AXIS, LeafMesh, STRAY};
+pub use feature_recovery::{STAGES as RECOVERY_STAGES, recover};
+pub use schedule::{BORDER_LEAVES, MAX_TRIANGLE_REACH};
 pub use tolerance::{STAGES as TOLERANCE_STAGES, refine};

@@ -71,7 +71,7 @@ impl<'a> Editor<'a> {
         tolerance: f64,
         trusting: bool,
     ) -> Editor<'a> {
-        let (grid, features, jumps) = (&cells.grid, &cells.features, &cells.jumps);
+        let (grid, features, jumps) = (&cells.context.grid, &cells.features, &cells.jumps);
         let (piece, answers, splits_left, given_up) = (0, Answers::new(), u64::MAX, 0);
         Editor {
             patch,

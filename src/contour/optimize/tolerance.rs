@@ -6,9 +6,10 @@
 
 use super::optimizer::Editor;
 use super::patch::Bounds;
-use super::schedule::LeafMesh;
+use super::schedule::for_each_patch;
 use crate::band::LeafId;
 use crate::contour::implicit_surface::Surface;
+use crate::contour::mesh::LeafMesh;
 use crate::contour::vertex::Cells;
 use crate::run::{Cancelled, RunSettings};
 
@@ -52,12 +53,13 @@ pub fn refine(
         is_last |= pass == PASSES;
         let tolerance = if is_last { tolerance } else { SHARE * tolerance };
         let numbers: Vec<Vec<usize>> =
-            cells.signs.leaves().map(|leaf| mesh.triangles(leaf).collect()).collect();
+            cells.context.signs.leaves().map(|leaf| mesh.triangles(leaf).collect()).collect();
         let mut done = Refined::default();
         let mut changed = false;
-        mesh.in_rounds(
-            cells,
-            cells.signs.leaves(),
+        for_each_patch(
+            mesh,
+            &cells.context,
+            cells.context.signs.leaves(),
             run,
             |mesh, leaf| {
                 mesh.triangles(leaf).next()?;
@@ -70,7 +72,7 @@ pub fn refine(
             },
             |(leaf, of_leaf): (LeafId, Refined)| {
                 changed |= of_leaf.split + of_leaf.moved > 0;
-                if !cells.owns(leaf) {
+                if !cells.context.owns(leaf) {
                     return;
                 }
                 done.split += of_leaf.split;

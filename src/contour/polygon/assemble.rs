@@ -1,13 +1,14 @@
 //! The polygons around all crossed edges, cut into triangles and collected to a mesh.
 
 use super::edge_polygon::{EdgePolygon, for_polygons, on_axis};
-use super::triangulate::{Cut, CutMethod, EDGE_VERTEX, Fit, polygonize};
+use super::triangulate::{Cut, EDGE_VERTEX, Fit, polygonize};
 use crate::band::LeafId;
+use crate::contour::error::{ContourError, TooManyVertices};
 use crate::contour::feature::Asker;
-use crate::contour::mesh::{Slots, Triangles, VertexRun};
-use crate::contour::optimize::{AXIS, LeafMesh};
-use crate::contour::vertex::{Cells, FaceVertices, is_missing, split};
-use crate::contour::{ContourError, ContourStatistics, TooManyVertices};
+use crate::contour::mesh::{AXIS_STRIDE, LeafMesh, TriangleBuffer, TriangleSlots, VertexRun, split_slices};
+use crate::contour::settings::CutMethod;
+use crate::contour::statistics::ContourStatistics;
+use crate::contour::vertex::{Cells, FaceVertices, is_missing};
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, PhaseGuard, SHARE};
 use rayon::prelude::*;
@@ -18,7 +19,7 @@ struct LeafOutput {
     /// How many triangles there are.
     count: usize,
     /// All of them, where they are more than their slots. Few leaves have that, and there is an output for each leaf.
-    too_many: Option<Box<Triangles>>,
+    overflow: Option<Box<TriangleBuffer>>,
     edge_vertices: Vec<[f64; 3]>,
     /// Feature vertices of polygons that are far from the surface.
     far: Vec<u32>,
@@ -50,14 +51,14 @@ pub fn triangulate(
     method: CutMethod,
     phase: &PhaseGuard<'_>,
 ) -> Result<Triangulation, ContourError> {
-    let leaves: Vec<LeafId> = cells.crossings.numbers.leaves().collect();
-    let edges = |leaf: LeafId| cells.crossings.numbers.range(leaf).len();
+    let leaves: Vec<LeafId> = cells.context.crossings.numbers.leaves().collect();
+    let edges = |leaf: LeafId| cells.context.crossings.numbers.range(leaf).len();
     let mut sizes = vec![0; leaves.iter().map(|&leaf| edges(leaf)).sum()];
     // Nearly all edges have two triangles.
     let slots = || leaves.iter().map(|&leaf| 2 * edges(leaf));
-    let mut triangles = Triangles::with_slots(2 * sizes.len());
+    let mut triangles = TriangleBuffer::with_slots(2 * sizes.len());
     let (corner_slots, edge_slots) = triangles.split(slots());
-    let size_slots = split(&mut sizes, leaves.iter().map(|&leaf| edges(leaf)));
+    let size_slots = split_slices(&mut sizes, leaves.iter().map(|&leaf| edges(leaf)));
     let slices = corner_slots.into_par_iter().zip(edge_slots).zip(size_slots);
     let mut outputs: Vec<LeafOutput> = leaves
         .par_iter()
@@ -66,7 +67,7 @@ pub fn triangulate(
         .with_max_len(SHARE)
         .map(|(&leaf, ((corners, edges), sizes))| {
             phase.advance(1)?;
-            Ok(in_leaf(cells, faces, &vertices, method, leaf, Slots::new(corners, edges), sizes))
+            Ok(in_leaf(cells, faces, &vertices, method, leaf, TriangleSlots::new(corners, edges), sizes))
         })
         .collect::<Result<_, Cancelled>>()?;
 
@@ -79,18 +80,19 @@ pub fn triangulate(
     vertices.reserve_exact(hubs);
     let counts: Vec<usize> = outputs.iter().map(|output| output.count).collect();
     let starts = triangles.close_up(slots(), &counts);
-    let all = || cells.signs.leaves();
-    let cell_runs = all().map(|leaf| VertexRun { leaf, numbers: as_u32(cells.numbers.vertex_range(leaf)) });
+    let all = || cells.context.signs.leaves();
+    let cell_runs =
+        all().map(|leaf| VertexRun { leaf, numbers: as_u32(cells.context.numbers.vertex_range(leaf)) });
     let face_runs = all().map(|leaf| VertexRun { leaf, numbers: faces.range(leaf) });
     let mut runs: Vec<VertexRun> = cell_runs.chain(face_runs).filter(|run| !run.numbers.is_empty()).collect();
     let mut far = Vec::new();
     for ((output, &leaf), &start) in outputs.iter_mut().zip(&leaves).zip(&starts) {
-        if let Some(own) = output.too_many.take() {
+        if let Some(own) = output.overflow.take() {
             triangles.put(start, &own);
         }
         if !output.edge_vertices.is_empty() {
             let first = vertices.len() as u32;
-            for vertex in triangles.corners[start..start + output.count].as_flattened_mut() {
+            for vertex in triangles.vertices[start..start + output.count].as_flattened_mut() {
                 *vertex += if *vertex < shared { 0 } else { first - shared };
             }
             vertices.extend_from_slice(&output.edge_vertices);
@@ -100,11 +102,11 @@ pub fn triangulate(
             far.push((leaf, std::mem::take(&mut output.far)));
         }
     }
-    let owned = || outputs.iter().zip(&leaves).filter(|(_, leaf)| cells.owns(**leaf));
+    let owned = || outputs.iter().zip(&leaves).filter(|(_, leaf)| cells.context.owns(**leaf));
     let quads: u64 = owned().map(|(output, _)| u64::from(output.quads)).sum();
     let split: u64 = owned().map(|(output, _)| output.edge_vertices.len() as u64).sum();
     let of_leaf = |leaf| faces.range(leaf).len() as u64;
-    let face_vertices = all().filter(|&leaf| cells.owns(leaf)).map(of_leaf).sum();
+    let face_vertices = all().filter(|&leaf| cells.context.owns(leaf)).map(of_leaf).sum();
     let statistics = ContourStatistics {
         quads,
         diagonal: quads - split,
@@ -112,17 +114,17 @@ pub fn triangulate(
         face_vertices,
         ..ContourStatistics::default()
     };
-    let Triangles { corners: triangles, edges } = triangles;
-    let count = cells.signs.len();
-    let mut ranges = Vec::with_capacity(count + 1);
+    let TriangleBuffer { vertices: triangles, edges } = triangles;
+    let count = cells.context.signs.len();
+    let mut firsts = Vec::with_capacity(count + 1);
     for (leaf, &start) in leaves.iter().zip(&starts) {
         // For the leaves before that have none, too.
-        ranges.resize(leaf.0 as usize + 1, start);
+        firsts.resize(leaf.0 as usize + 1, start);
     }
-    ranges.resize(count + 1, triangles.len());
+    firsts.resize(count + 1, triangles.len());
     let (changed, added) = (vec![Vec::new(); count], vec![Vec::new(); count]);
     let mesh = TriMesh { vertices, triangles };
-    let mesh = LeafMesh { mesh, ranges, edges, changed, added, runs, gone: Vec::new() };
+    let mesh = LeafMesh { mesh, firsts, edges, changed, added, runs, removed: Vec::new() };
     Ok(Triangulation { mesh, far, sizes, statistics })
 }
 
@@ -137,14 +139,14 @@ fn in_leaf(
     vertices: &[[f64; 3]],
     method: CutMethod,
     leaf: LeafId,
-    mut slots: Slots<'_>,
+    mut slots: TriangleSlots<'_>,
     sizes: &mut [u8],
 ) -> LeafOutput {
     let mut output = LeafOutput::default();
     let mut triangles = Vec::new();
     let mut sizes = sizes.iter_mut();
-    let grid = &cells.grid;
-    let is_open = cells.crossings.numbers.is_open();
+    let grid = &cells.context.grid;
+    let is_open = cells.context.crossings.numbers.is_open();
     for_polygons(
         cells,
         faces,
@@ -158,7 +160,7 @@ fn in_leaf(
             triangles.clear();
             let cut = polygonize(polygon, &envelope, &fit, method, &mut triangles);
             let hub = || grid.between_walls(node, on_axis(along.0, grid.clamp(along.1)));
-            if let Some(surface) = cells.surface
+            if let Some(surface) = cells.context.surface
                 && !is_jump
                 && !fit.sides.is_empty()
             {
@@ -182,15 +184,15 @@ fn in_leaf(
                 }
                 output.edge_vertices.push(hub());
             }
-            slots.extend(&triangles, number + AXIS * along.0 as u16);
+            slots.extend(&triangles, number + AXIS_STRIDE * along.0 as u16);
             if let Some(size) = size {
                 *size = triangles.len() as u8;
             }
             output.quads += 1;
         },
     );
-    let (count, too_many) = slots.finish();
-    (output.count, output.too_many) = (count, too_many.map(Box::new));
+    let (count, overflow) = slots.finish();
+    (output.count, output.overflow) = (count, overflow.map(Box::new));
     output
 }
 

@@ -2,16 +2,15 @@
 
 use super::edge_polygon::{EdgePolygon, for_polygons};
 use super::envelope::Envelope;
-use super::triangulate::{Cut, CutMethod, Fit, Polygon, polygonize};
+use super::triangulate::{Cut, Fit, Polygon, polygonize};
 use crate::band::SignField;
-use crate::contour::cell::CellNumbers;
+use crate::contour::error::ContourError;
 use crate::contour::feature::Sides;
-use crate::contour::rounded_lattice::Grid;
-use crate::contour::vertex::{Cells, face_vertices};
-use crate::contour::{ContourError, ContourSettings, reach};
+use crate::contour::settings::{ContourSettings, CutMethod};
+use crate::contour::vertex::{PlacedVertices, with_vertices};
 use crate::edge::Crossings;
-use crate::lattice::{Lattice, Slab};
-use crate::run::{Phase, RunSettings};
+use crate::lattice::Lattice;
+use crate::run::RunSettings;
 use std::time::Instant;
 
 /// The polygons of a few leaves are cut this often by each method, and the shortest time counts: an
@@ -44,18 +43,12 @@ pub fn cut_times<const N: usize>(
     methods: [CutMethod; N],
     run: &RunSettings,
 ) -> Result<[CutTimes; N], ContourError> {
-    let grid = Grid::new(lattice, settings.precision, reach(signs, crossings))?;
-    run.install(|| {
-        let numbers = CellNumbers::new(signs, run)?;
-        let phase = run.phase(Phase::Contour, (numbers.leaves().count() + signs.len()) as u64);
-        let (cells, placed) = Cells::place(signs, crossings, grid, Slab::WHOLE, &numbers, None, &phase)?;
-        let mut vertices = placed.vertices;
-        let mut faces = face_vertices(&cells, &vertices, run)?;
-        vertices.append(&mut faces.positions);
+    with_vertices(signs, crossings, lattice, None, settings, run, |placed, phase| {
+        let PlacedVertices { cells, faces, vertices, .. } = placed;
         let mut times = [CutTimes::default(); N];
         let mut polygons: Vec<(Polygon, Envelope, Fit<'static>)> = Vec::new();
         let mut triangles = Vec::new();
-        for leaf in signs.leaves() {
+        for leaf in crossings.numbers.leaves() {
             phase.advance(1)?;
             polygons.clear();
             for_polygons(

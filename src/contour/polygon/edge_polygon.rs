@@ -40,13 +40,13 @@ pub fn for_polygons(
     leaf: LeafId,
     mut visit: impl FnMut(EdgePolygon<'_>),
 ) {
-    let numbers = &cells.crossings.numbers;
+    let numbers = &cells.context.crossings.numbers;
     if numbers.range(leaf).is_empty() {
         return;
     }
-    let grid = &cells.grid;
-    let inside = cells.signs.inside(leaf);
-    let origin = cells.signs.origin(leaf);
+    let grid = &cells.context.grid;
+    let inside = cells.context.signs.inside(leaf);
+    let origin = cells.context.signs.origin(leaf);
     let around = LeafCells::new(cells, faces, leaf);
     // The planes of the leaf's nodes, and the next ones.
     let planes: [[f64; LEAF_DIM as usize + 1]; 3] =
@@ -70,7 +70,7 @@ pub fn for_polygons(
                 (End::Low, Envelope { above: ends[0], below: ends[1] })
             };
             fill(&mut polygon, &around, vertices, local, axis, outside);
-            let sample = cells.crossings.sample(id);
+            let sample = cells.context.crossings.sample(id);
             let point = grid.ideal(node, on_axis(axis, sample.t));
             let corners = || polygon.corners().iter().map(|c| c.vertex);
             // Most polygons are near no feature, and sides are large.
@@ -93,8 +93,8 @@ pub fn for_polygons(
 fn is_at_cut(cells: &Cells<'_>, leaf: LeafId, local: Ijk) -> bool {
     const LAST: i32 = LEAF_DIM - 1;
     match local.0[0] {
-        0 => cells.signs.is_cut(leaf, -1),
-        LAST => cells.signs.is_cut(leaf, 1),
+        0 => cells.context.signs.is_cut(leaf, -1),
+        LAST => cells.context.signs.is_cut(leaf, 1),
         _ => false,
     }
 }

@@ -41,21 +41,21 @@ impl<'a> LeafCells<'a> {
         };
         for n in 0..8 {
             let delta = [-(n >> 2), -(n >> 1 & 1), -(n & 1)];
-            let Some(other) = cells.signs.neighbour(leaf, delta) else { continue };
+            let Some(other) = cells.context.signs.neighbour(leaf, delta) else { continue };
             around.is_crowded |= cells.is_crowded(other);
             if !faces.range(other).is_empty() {
                 around.faces = Some(faces);
             }
-            let active = cells.numbers.active(other);
+            let active = cells.context.numbers.active(other);
             let place = |number| place(Ijk::in_leaf(Ijk(delta.map(|d| LEAF_DIM * d)), number).0);
             if other == leaf {
-                for (number, cell) in bits(active).zip(cells.numbers.range(leaf)) {
+                for (number, cell) in bits(active).zip(cells.context.numbers.range(leaf)) {
                     around.cases[place(number)] = cells.cell_case(CellId(cell as u32));
                 }
                 continue;
             }
             for number in bits(&facing_layer(active, delta)) {
-                around.cases[place(number)] = cells.cell_case(cells.numbers.id(other, number));
+                around.cases[place(number)] = cells.cell_case(cells.context.numbers.id(other, number));
             }
         }
         around
@@ -90,7 +90,7 @@ impl<'a> LeafCells<'a> {
     pub fn face_vertex(&self, local: [i32; 3], axis: Axis, edge: Edge) -> Option<u32> {
         let faces = self.faces?;
         let cells = self.cells;
-        let (leaf, cell) = cells.numbers.locate(cells.signs, self.leaf, local);
+        let (leaf, cell) = cells.context.numbers.locate(cells.context.signs, self.leaf, local);
         faces.get(leaf, cell, cells.case(cell), axis, edge)
     }
 }

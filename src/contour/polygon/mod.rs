@@ -10,4 +10,3 @@ mod triangulate;
 
 pub use assemble::{Triangulation, triangulate};
 pub use diagonal_test_times::{CutTimes, cut_times};
-pub use triangulate::CutMethod;

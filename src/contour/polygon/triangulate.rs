@@ -3,6 +3,7 @@
 use super::envelope::Envelope;
 use super::ju_udeshi;
 use crate::contour::feature::Sides;
+use crate::contour::settings::CutMethod;
 use crate::geom::quadric::dot;
 
 /// Four cell vertices, and a face vertex between any two of them.
@@ -133,18 +134,6 @@ pub enum Cut {
 
 /// The number that stands for the vertex on the grid edge.
 pub const EDGE_VERTEX: u32 = u32::MAX;
-
-/// How it is decided which triangles stay in the envelope of a grid edge. Either way the mesh is closed,
-/// 2-manifold and free of intersections.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum CutMethod {
-    /// By convex/concave analysis (\[LW11\] section VI).
-    #[default]
-    ConvexConcave,
-    /// By segment-triangle intersections (Ju and Udeshi 2006): slower, and never with fewer triangles. It is
-    /// there to be measured against.
-    PolygonEdges,
-}
 
 /// Cuts `polygon` into triangles that stay in the envelope and appends them to `triangles`.
 pub fn polygonize(

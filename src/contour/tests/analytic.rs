@@ -1,7 +1,8 @@
 //! Surfaces with known answers.
 
 use crate::contour::tests::fields::{Implicit, run, sample};
-use crate::contour::{ContourError, ContourSettings, Lattice, Precision, contour};
+use crate::contour::{ContourError, ContourSettings, Precision, contour};
+use crate::lattice::Lattice;
 use crate::mesh::TriMesh;
 use crate::run::RunSettings;
 use crate::verify::tests::audit::audit;

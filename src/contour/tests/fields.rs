@@ -1,9 +1,9 @@
 //! Sign fields and crossings from functions.
 
 use crate::band::SignField;
-use crate::contour::{ContourSettings, ContourStatistics, CutMethod, Lattice, Precision, Surface, contour};
+use crate::contour::{ContourSettings, ContourStatistics, CutMethod, Precision, Surface, contour};
 use crate::edge::{Crossing, Crossings, EdgeNumbers};
-use crate::lattice::{Axis, Ijk, LEAF_DIM, LeafMask, Slab};
+use crate::lattice::{Axis, Ijk, LEAF_DIM, Lattice, LeafMask, Slab};
 use crate::mesh::TriMesh;
 use crate::run::RunSettings;
 use std::convert::Infallible;

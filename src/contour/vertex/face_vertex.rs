@@ -17,8 +17,8 @@ use super::cell_vertex::is_missing;
 use super::cells::Cells;
 use crate::band::{LeafId, SignField};
 use crate::contour::cell::{Case, CellId, CellNumbers, Corner, Edge, Face, Pair, locate};
+use crate::contour::error::{ContourError, TooManyVertices};
 use crate::contour::rounded_lattice::Grid;
-use crate::contour::{ContourError, TooManyVertices};
 use crate::edge::Crossings;
 use crate::geom::predicates::orient3d;
 use crate::lattice::{Axis, Ijk, LEAF_DIM, bits};
@@ -77,9 +77,9 @@ pub fn face_vertices(
     run: &RunSettings,
 ) -> Result<FaceVertices, ContourError> {
     // Both cells at a face can need a vertex there.
-    let upper = |leaf| Axis::ALL.map(|axis| cells.signs.neighbour(leaf, Ijk::default().next(axis).0));
+    let upper = |leaf| Axis::ALL.map(|axis| cells.context.signs.neighbour(leaf, Ijk::default().next(axis).0));
     let is_crowded = |leaf| [Some(leaf)].iter().chain(&upper(leaf)).flatten().any(|&l| cells.is_crowded(l));
-    let leaves: Vec<LeafId> = cells.numbers.leaves().filter(|&leaf| is_crowded(leaf)).collect();
+    let leaves: Vec<LeafId> = cells.context.numbers.leaves().filter(|&leaf| is_crowded(leaf)).collect();
     let per_leaf: Vec<(Vec<Marks>, Vec<[f64; 3]>)> = leaves
         .par_iter()
         .with_min_len(16)
@@ -90,7 +90,7 @@ pub fn face_vertices(
         })
         .collect::<Result<_, Cancelled>>()?;
     let first_of_all = vertices.len() as u64;
-    let mut first = Vec::with_capacity(cells.signs.len() + 1);
+    let mut first = Vec::with_capacity(cells.context.signs.len() + 1);
     let (mut marks, mut positions) = (Vec::new(), Vec::new());
     let next = |positions: &Vec<_>| {
         u32::try_from(first_of_all + positions.len() as u64).map_err(|_| TooManyVertices)
@@ -101,13 +101,13 @@ pub fn face_vertices(
         marks.extend(of_leaf);
         positions.extend(in_leaf);
     }
-    first.resize(cells.signs.len() + 1, next(&positions)?);
+    first.resize(cells.context.signs.len() + 1, next(&positions)?);
     Ok(FaceVertices { marks, first, positions })
 }
 
 /// The face vertices on the upper faces of the cells of one leaf.
 fn in_leaf(cells: &Cells<'_>, vertices: &[[f64; 3]], leaf: LeafId) -> (Vec<Marks>, Vec<[f64; 3]>) {
-    let (signs, numbers): (&SignField, &CellNumbers) = (cells.signs, cells.numbers);
+    let (signs, numbers): (&SignField, &CellNumbers) = (cells.context.signs, cells.context.numbers);
     let (mut all, mut positions) = (Vec::new(), Vec::new());
     for number in bits(numbers.active(leaf)) {
         let local = Ijk::in_leaf(Ijk::default(), number);
@@ -141,9 +141,17 @@ fn in_leaf(cells: &Cells<'_>, vertices: &[[f64; 3]], leaf: LeafId) -> (Vec<Marks
                     continue;
                 }
                 let ijk = signs.origin(leaf) + local;
-                if !passes_corner(&cells.grid, ijk, axis, corner, ends) {
+                if !passes_corner(&cells.context.grid, ijk, axis, corner, ends) {
                     marks.pairs |= 1 << (2 * axis as usize + n);
-                    positions.push(middle(&cells.grid, cells.crossings, signs, leaf, local, axis, pair));
+                    positions.push(middle(
+                        &cells.context.grid,
+                        cells.context.crossings,
+                        signs,
+                        leaf,
+                        local,
+                        axis,
+                        pair,
+                    ));
                 }
             }
         }

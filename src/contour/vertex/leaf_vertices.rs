@@ -1,20 +1,21 @@
 //! The vertices of the cells of one leaf.
 
 use super::cell_vertex::{self, Placement, sample};
-use super::cells::{CellCase, Cells};
+use super::cells::CellCase;
+use super::context::CellContext;
 use super::leaf_crossings::LeafCrossings;
 use super::qef_batch::{Batch, LANES};
+use super::relocation::Relocation;
 use crate::band::LeafId;
 use crate::contour::cell::{Case, CaseTable, CornerSigns, constant_case};
 use crate::contour::feature::{FeatureVertex, Normals};
-use crate::contour::optimize::Wish;
 use crate::lattice::{Ijk, bits};
 
 /// What is found of a leaf's cells besides the positions of their vertices.
 #[derive(Debug, Default)]
 pub struct LeafVertices {
     /// Vertices that ought to be elsewhere.
-    pub wishes: Vec<Wish>,
+    pub relocations: Vec<Relocation>,
     /// Vertices on creases and corners.
     pub features: Vec<FeatureVertex>,
     /// Vertices of cells with a jump of the sign.
@@ -39,7 +40,7 @@ struct Waiting {
 
 /// The cells of a leaf on their way to vertices.
 struct Placer<'a> {
-    cells: &'a Cells<'a>,
+    context: &'a CellContext<'a>,
     leaf: LeafId,
     crossings: LeafCrossings<'a>,
     vertices: &'a mut [[f64; 3]],
@@ -51,7 +52,7 @@ struct Placer<'a> {
 impl LeafVertices {
     /// Fills in the cases and the vertices of the cells of one leaf.
     pub fn place(
-        cells: &Cells<'_>,
+        context: &CellContext<'_>,
         leaf: LeafId,
         cases: &mut [CellCase],
         vertices: &mut [[f64; 3]],
@@ -60,19 +61,19 @@ impl LeafVertices {
         if cases.is_empty() {
             return found;
         }
-        let Some(corners) = CornerSigns::new(cells.signs, leaf) else { return found };
-        let crossings = LeafCrossings::new(cells.signs, cells.crossings, leaf);
+        let Some(corners) = CornerSigns::new(context.signs, leaf) else { return found };
+        let crossings = LeafCrossings::new(context.signs, context.crossings, leaf);
         let table = CaseTable::get();
-        let first_vertex = cells.numbers.vertex_range(leaf).start as u32;
+        let first_vertex = context.numbers.vertex_range(leaf).start as u32;
         let (batch, waiting) = (Batch::default(), [None; LANES]);
         let found = LeafVertices { is_crowded: corners.crowded() != [0; 8], ..found };
-        let mut placer = Placer { cells, leaf, crossings, vertices, batch, waiting, found };
+        let mut placer = Placer { context, leaf, crossings, vertices, batch, waiting, found };
         let mut first = 0;
-        for (cell, number) in cases.iter_mut().zip(bits(cells.numbers.active(leaf))) {
+        for (cell, number) in cases.iter_mut().zip(bits(context.numbers.active(leaf))) {
             let id = constant_case(table, corners.mask(number));
             *cell = CellCase { first_vertex: first_vertex + first as u32, case: id };
             let case = table.case(id);
-            if cells.crossings.numbers.is_open() && !placer.has_all_crossings(case, number) {
+            if context.crossings.numbers.is_open() && !placer.has_all_crossings(case, number) {
                 let vertices = &mut placer.vertices[first..first + case.sheets().len()];
                 vertices.fill(cell_vertex::MISSING);
                 first += case.sheets().len();
@@ -121,8 +122,8 @@ impl Placer<'_> {
         let solved = self.batch.solve();
         for n in 0..LANES {
             let Some(cell) = self.waiting[n].take() else { break };
-            let at = self.cells.signs.origin(self.leaf) + cell.local;
-            let smooth = solved.smooth(n).and_then(|point| cell_vertex::free(&self.cells.grid, at, point));
+            let at = self.context.signs.origin(self.leaf) + cell.local;
+            let smooth = solved.smooth(n).and_then(|point| cell_vertex::free(&self.context.grid, at, point));
             match smooth {
                 Some(position) => self.vertices[cell.first] = position,
                 None => self.place_one(cell, 0),
@@ -132,7 +133,7 @@ impl Placer<'_> {
 
     /// Places the vertex of a sheet by itself.
     fn place_one(&mut self, Waiting { case, local, first }: Waiting, sheet: usize) {
-        let Cells { signs, grid, numbers, surface, .. } = self.cells;
+        let CellContext { signs, grid, numbers, surface, .. } = self.context;
         let at = signs.origin(self.leaf) + local;
         let crossing = |edge| self.crossings.of_cell(local.0, edge);
         let placed = cell_vertex::place(grid, at, case, sheet, crossing, *surface);
@@ -146,9 +147,9 @@ impl Placer<'_> {
         let Some(feature) = placed.feature else { return };
         self.found.features.push(FeatureVertex { vertex, feature });
         if placed.placement == Placement::Clamped {
-            self.found.wishes.push(Wish { vertex, place: Some(feature.point) });
+            self.found.relocations.push(Relocation { vertex, target: Some(feature.point) });
         } else if feature.normals == Normals::default() {
-            self.found.wishes.push(Wish { vertex, place: None });
+            self.found.relocations.push(Relocation { vertex, target: None });
         }
     }
 }

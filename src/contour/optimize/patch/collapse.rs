@@ -40,7 +40,7 @@ impl Patch {
             self.changes.triangles.push((self.triangles[n].number, None));
             self.remove(n);
         }
-        self.changes.gone_vertices.push(lost);
+        self.changes.removed_vertices.push(lost);
         true
     }
 

@@ -1,7 +1,7 @@
 use super::*;
 use crate::band::LeafId;
-use crate::contour::mesh::VertexRun;
-use crate::contour::optimize::schedule::{CHANGED, LeafMesh};
+use crate::contour::mesh::{CHANGED, LeafMesh, VertexRun};
+
 use crate::mesh::{Topology, TriMesh, shapes};
 use crate::verify::tests::audit::audit;
 
@@ -22,17 +22,17 @@ fn patch(mesh: &TriMesh) -> Patch {
 
 /// The mesh with what a patch changed.
 fn changed(mesh: &TriMesh, patch: Patch) -> TriMesh {
-    let ranges = vec![0, mesh.triangles.len()];
+    let firsts = vec![0, mesh.triangles.len()];
     let runs = vec![VertexRun { leaf: LeafId(0), numbers: 0..mesh.vertices.len() as u32 }];
     let edges = vec![CHANGED; mesh.triangles.len()];
     let changed = vec![(0..mesh.triangles.len()).collect()];
     let mut changed = LeafMesh {
         mesh: mesh.clone(),
-        ranges,
+        firsts,
         edges,
         changed,
         added: vec![Vec::new()],
-        gone: Vec::new(),
+        removed: Vec::new(),
         runs,
     };
     changed.apply(LeafId(0), patch.changes);
