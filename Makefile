@@ -7,6 +7,7 @@
 #   make test-full                  also the long ones, in release
 #   make bench                      each stage, and the whole beside OpenVDB's tools and MeshLib
 #   make bench-report               measures all, and writes docs/benchmarks.md; QUICK=1: ten minutes
+#   make pictures                   renders the pictures of README.md and docs/thicken.md
 #   make instructions OLD=a NEW=b   two commits by instruction counts
 #   make lint doc setup
 
@@ -24,13 +25,13 @@ ARGS ?=
 BENCH_MODEL ?= anchor
 BENCH_RESOLUTION ?= 256
 PYTHON ?= python3
-# What `make bench-report` measures.
+# What `make bench-report` measures, and what makes the meshes of `make pictures`.
 PROGRAM ?= target/release/exocarp
 # What `make instructions` compares.
 OLD ?= HEAD~1
 NEW ?= HEAD
 
-.PHONY: setup build demo test test-full lint bench bench-report instructions doc clean
+.PHONY: setup build demo test test-full lint bench bench-report pictures instructions doc clean
 
 setup:
 	@bash scripts/setup.sh
@@ -62,6 +63,9 @@ bench: build
 # Writes docs/benchmarks.md and docs/compare from one run; MeshLib if PYTHON can import it.
 bench-report: build
 	python3 scripts/bench_report.py $(if $(QUICK),--quick) --program '$(PROGRAM)' --python '$(PYTHON)'
+
+pictures: build
+	python3 scripts/pictures.py --program '$(PROGRAM)'
 
 # Instructions of two commits on a small case: make instructions OLD=HEAD~1 NEW=HEAD
 instructions:
