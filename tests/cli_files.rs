@@ -296,7 +296,7 @@ fn a_full_disk_is_a_limit_for_every_output() {
     assert!(names(tiny.0.path()).is_empty());
 }
 
-/// The same where files may not grow, which ended the program with a signal.
+/// A full disk, made by a limit on the size of files, which ended the program with a signal.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_limit_on_the_size_of_files_is_one_too() {

@@ -1,4 +1,4 @@
-//! The same result in every format: the same coordinates, whoever reads them.
+//! One result in every format: equal coordinates, whoever reads them.
 
 mod common;
 

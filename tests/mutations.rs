@@ -72,7 +72,7 @@ const WORDS: [&str; 16] = [
     "1/2/3/4",
 ];
 
-/// The same as bytes.
+/// Values that numbers in binary files are replaced by.
 const BYTES: [[u8; 4]; 6] = [
     [0xff; 4],
     [0xff, 0xff, 0xff, 0x7f],

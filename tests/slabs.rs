@@ -150,7 +150,7 @@ fn tiles_one_after_the_other_give_the_whole() {
     }
 }
 
-/// The same surface with its outside inside: everything far away is solid, and the result ends
+/// A mesh turned inside out: everything far away is solid, and the result ends
 /// where the lattice does.
 fn inside_out(mut mesh: TriMesh) -> TriMesh {
     mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));

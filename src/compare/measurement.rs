@@ -16,7 +16,7 @@ pub struct Measurement {
     /// The most memory that the process had resident when the surface was complete, in bytes;
     /// `None` where the system does not tell.
     pub peak_memory: Option<u64>,
-    /// The same just before the method began: program, libraries, input.
+    /// Memory resident just before the method began, in bytes: program, libraries, input.
     pub memory_before: Option<u64>,
     /// Active voxels of the grid that was contoured; `None` where the method does not say.
     pub active_voxels: Option<u64>,
@@ -27,7 +27,7 @@ pub struct Measurement {
 /// A phase of a method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PhaseTime {
-    /// Its name.
+    /// Name of the phase.
     pub name: String,
     /// Seconds.
     pub seconds: f64,

@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
-    /// This library.
+    /// exocarp itself.
     Exocarp,
     /// OpenVDB: `meshToVolume` with a band as wide as |D| + 3 voxels, then `volumeToMesh` at D.
     OpenvdbWide,
     /// OpenVDB: `meshToVolume`, `LevelSetFilter::offset` of first order, `volumeToMesh`.
     OpenvdbFirst,
-    /// The same with WENO5 differences and TVD-RK3 steps.
+    /// OpenVDB: `LevelSetFilter::offset` with WENO5 differences and TVD-RK3 steps.
     OpenvdbWeno5,
     /// MeshLib's general offset, mode "standard".
     MeshlibStandard,

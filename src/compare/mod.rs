@@ -1,5 +1,4 @@
-//! The same offset, on the same lattice, with this library and with what else there is: OpenVDB and
-//! MeshLib.
+//! Comparison of offsets: one surface, on one lattice, made by exocarp, by OpenVDB and by MeshLib.
 //!
 //! ```text
 //!  INPUT -> clean -> a process per run and method -> PLY and a line of JSON -> medians
@@ -111,7 +110,7 @@ pub struct MethodResult {
     pub lost: Option<Lost>,
     /// What its last output is worth.
     pub quality: Option<VerifyReport>,
-    /// Its last output.
+    /// The method's last output.
     #[serde(skip)]
     pub mesh: Option<TriMesh>,
 }

@@ -26,9 +26,9 @@ pub struct Programs {
 pub enum Lost {
     /// The process took longer than this many seconds.
     TimedOut(u64),
-    /// It ended by a signal.
+    /// The process ended by a signal, with this number.
     Crashed(i32),
-    /// It said what failed.
+    /// The process said what failed.
     Failed(String),
 }
 

@@ -10,7 +10,7 @@ use super::Format;
 pub struct LoadError {
     /// The file.
     pub path: PathBuf,
-    /// Its format; `None` when the extension is not known.
+    /// Format of the file; `None` when the extension is not known.
     pub format: Option<Format>,
     /// The position of the cause in the file.
     pub location: Location,
@@ -40,7 +40,7 @@ pub enum Location {
     Element {
         /// "vertex", "face", "triangle" or the name in the PLY header.
         name: String,
-        /// Its number among the elements of its kind, counted from 0.
+        /// Number of the element among those of its kind, counted from 0.
         number: u64,
         /// The byte at which reading it stopped, counted from 0.
         byte: u64,
@@ -214,7 +214,7 @@ pub enum SaveErrorKind {
     Coordinate {
         /// The vertex.
         vertex: usize,
-        /// Its position.
+        /// Position of the vertex.
         position: [f64; 3],
     },
     /// A triangle names a vertex that is not there.

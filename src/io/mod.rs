@@ -148,7 +148,7 @@ pub fn load(path: &Path) -> Result<TriMesh, LoadError> {
     load_with_notes(path).map(|loaded| loaded.mesh)
 }
 
-/// The same, with what was passed over to read the file.
+/// Loads a mesh, with notes on what was passed over to read the file.
 ///
 /// # Errors
 /// As [`load`].

@@ -33,7 +33,7 @@ pub(super) struct PolygonMesh {
 struct Polygon {
     /// How many triangles come before it.
     position: usize,
-    /// Its first corner; the last one is before the first of the next polygon.
+    /// First corner of the polygon; the last one is before the first of the next polygon.
     first: usize,
 }
 

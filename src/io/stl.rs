@@ -259,7 +259,7 @@ pub(super) fn head(triangles: u32) -> [u8; HEAD] {
     titled_head(concat!("binary STL written by exocarp ", env!("CARGO_PKG_VERSION")), triangles)
 }
 
-/// The same with another title, of which 80 bytes are kept. It must not begin with "solid".
+/// Makes a header with a title, of which 80 bytes are kept. It must not begin with "solid".
 pub(super) fn titled_head(title: &str, triangles: u32) -> [u8; HEAD] {
     let mut head = [b' '; HEAD];
     let length = title.len().min(80);

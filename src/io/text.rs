@@ -187,7 +187,7 @@ pub(super) enum Ended {
     Return,
     /// With the file.
     File,
-    /// It has more bytes than are read.
+    /// The line has more bytes than are read.
     TooLong,
 }
 

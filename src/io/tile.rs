@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 /// Which share of which work a tile is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tile {
-    /// Its number, from 1.
+    /// Number of the tile, from 1.
     pub number: u32,
     /// How many tiles there are.
     pub of: u32,
@@ -35,19 +35,19 @@ pub enum MergeErrorKind {
     /// The file is no tile.
     #[error("this is not a tile, a .ply, .stl or .vdb file with one share of an offset")]
     NotATile,
-    /// It is a tile of another input, or was made with other settings.
+    /// A tile is of another input, or was made with other settings.
     #[error("this tile is of another model, or was made with other settings; make all tiles alike")]
     OtherJob,
-    /// Its format, with this extension, is not that of the output.
+    /// The format of a tile, with this extension, is not that of the output.
     #[error("tiles and output must have the same format; here it is .{0}")]
     OtherFormat(&'static str),
-    /// The same tile is there twice.
+    /// A tile is there twice.
     #[error("tile {0} is there twice; name each tile once")]
     Twice(u32),
     /// A tile is not there.
     #[error("tile {number} of {of} is missing; make it and name it, too")]
     Missing {
-        /// Its number.
+        /// Number of the tile, from 1.
         number: u32,
         /// How many there are.
         of: u32,

@@ -30,7 +30,7 @@ impl Lab<'_> {
         self.refined_model(of, 1)
     }
 
-    /// The same with the sides of its triangles divided by `cuts`.
+    /// Loads a model with the sides of its triangles divided by `cuts`.
     pub fn refined_model(&self, of: PaperModel, cuts: u32) -> Result<Model, PaperError> {
         Model::load(of, &self.settings.files, cuts, self.run)
     }

@@ -75,12 +75,12 @@ impl Table {
         Table::ALL.into_iter().find(|table| table.number() == number)
     }
 
-    /// Its number, 1 to 7.
+    /// Returns the number of the table, 1 to 7.
     pub fn number(self) -> u32 {
         self as u32 + 1
     }
 
-    /// Its caption.
+    /// Returns the caption of the table.
     pub fn title(self) -> &'static str {
         match self {
             Table::Times => "I. Time per model and offset (seconds)",

@@ -54,9 +54,9 @@ impl Cell {
 /// A table as it was measured.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
-    /// Its number in the paper.
+    /// Number of the table in the paper, 1 to 7.
     pub table: u32,
-    /// Its caption.
+    /// Caption of the table.
     pub title: &'static str,
     /// The names of the columns.
     pub columns: Vec<&'static str>,

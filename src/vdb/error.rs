@@ -77,15 +77,15 @@ pub enum VdbError {
         what: &'static str,
         /// The length that it should have.
         expected: usize,
-        /// Its length.
+        /// Length of the array.
         found: usize,
     },
     /// A leaf or a block of nodes is not where one can be.
     #[error("a block of {side} nodes cannot begin at node {:?}: {reason}", origin.0)]
     Block {
-        /// Its lowest node.
+        /// Lowest node of the block.
         origin: Ijk,
-        /// Its side in nodes.
+        /// Side of the block in nodes.
         side: u32,
         /// Why not.
         reason: &'static str,

@@ -22,11 +22,11 @@ pub struct FileInfo {
 /// A grid in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GridInfo {
-    /// Its name; a repeated one has its number behind it: `name[1]`.
+    /// Name of the grid; a repeated one has its number behind it: `name[1]`.
     pub name: String,
     /// Type of its values: `float`, `int32`, `vec3s`, ...
     pub value_type: String,
-    /// Its class: `level set`, `fog volume`, `staggered vector field` or `unknown`.
+    /// Class of the grid: `level set`, `fog volume`, `staggered vector field` or `unknown`.
     pub class: String,
     /// Widths of a voxel in model units.
     pub voxel: [f64; 3],

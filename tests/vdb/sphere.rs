@@ -131,7 +131,7 @@ pub fn read_out(band: &Band) -> Leaves {
 }
 
 impl Leaves {
-    /// The same leaves in the order of their origins.
+    /// Sorts the leaves by their origins.
     pub fn sorted(self) -> Leaves {
         let mut order: Vec<usize> = (0..self.origins.len()).collect();
         order.sort_by_key(|&n| self.origins[n]);

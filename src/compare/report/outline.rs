@@ -16,9 +16,9 @@ const STEPS: usize = 8;
 /// The true offset solid on a plane.
 #[derive(Clone, Debug)]
 pub struct Outline {
-    /// Its border: the curve where dis = r.
+    /// Border of the true solid: the curve where dis = r.
     pub curve: Vec<Segment>,
-    /// Its inside, as lines along x, [`Outline::pitch`] from each other.
+    /// Inside of the true solid, as lines along x, [`Outline::pitch`] from each other.
     pub inside: Vec<Segment>,
     /// The distance between those lines.
     pub pitch: f64,

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 /// Whether the triangles' edges are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wires {
-    /// They are.
+    /// Edges are drawn over the surface.
     Drawn,
     /// The surface only.
     Hidden,

@@ -22,7 +22,7 @@ pub struct Spot {
 /// Why a spot was chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// It is the sharpest crease.
+    /// The sharpest crease.
     Crease,
     /// Somebody is worst there.
     Worst,

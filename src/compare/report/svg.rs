@@ -13,11 +13,11 @@ pub struct Svg {
 /// Where a text stands relative to its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// It begins there.
+    /// The text begins at its position.
     Start,
-    /// It is centred there.
+    /// The text is centred on its position.
     Middle,
-    /// It ends there.
+    /// The text ends at its position.
     End,
 }
 

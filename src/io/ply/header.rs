@@ -36,9 +36,9 @@ pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<(Role, ElementDef)>,
     pub(super) vertex_count: u64,
-    /// Its length in bytes.
+    /// Length of the header in bytes.
     pub(super) bytes: u64,
-    /// Its length in lines.
+    /// Length of the header in lines.
     pub(super) lines: u64,
     /// The lines that were skipped, if any.
     pub(super) skipped: Option<SkippedLines>,

@@ -80,11 +80,11 @@ fn read_body<R: Read + Seek>(
 /// What an element is to us.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Role {
-    /// Its `x`, `y`, `z` are a vertex.
+    /// The element's `x`, `y`, `z` are a vertex.
     Vertex,
-    /// Its list of vertex numbers is a face.
+    /// The element's list of vertex numbers is a face.
     Face,
-    /// Its list of vertex numbers is a sequence of triangle strips.
+    /// The element's list of vertex numbers is a sequence of triangle strips.
     Strips,
     /// Nothing.
     Other,
