@@ -21,7 +21,7 @@ pub(super) struct Arguments {
     pub command: Command,
 }
 
-/// What every command takes.
+/// Options of every command.
 #[derive(Args, Debug)]
 pub(super) struct Common {
     /// Number of worker threads, up to 512 or the number of cores [default: all cores]
@@ -119,7 +119,7 @@ pub(super) struct OffsetArguments {
 pub(super) struct TileNumber {
     /// From 1.
     pub number: u32,
-    /// How many there are.
+    /// Number of tiles.
     pub of: u32,
 }
 
@@ -178,7 +178,7 @@ pub(super) struct ThickenArguments {
     pub more: OutputArguments,
 }
 
-/// How the mesh is written, and what is written beside it.
+/// Options of the files that are written.
 #[derive(Args, Debug)]
 pub(super) struct OutputArguments {
     /// Write 64-bit coordinates instead of 32-bit ones (PLY, OBJ, OFF)

@@ -1,4 +1,4 @@
-//! What stands below the help of the program and of its commands.
+//! Examples, printed below the help of the program and of its commands.
 
 pub(super) const ALL: &str = "\
 Examples:

@@ -1,4 +1,4 @@
-//! How the program ends: exit codes, and which error means which.
+//! Exit codes, and the error that each stands for.
 
 use exocarp::compare::CompareError;
 use exocarp::error::Error;
@@ -152,7 +152,7 @@ fn remedy(error: &Error) -> &'static str {
     }
 }
 
-/// Which error means which exit.
+/// Returns the exit code of an error.
 fn of(error: &Error) -> Exit {
     match error {
         Error::Cancelled => Exit::Interrupted,

@@ -1,4 +1,4 @@
-//! What the commands read and write: meshes, level sets, JSON.
+//! Files that commands read and write: meshes, level sets, JSON.
 
 use super::args::{Codec, OutputArguments};
 use super::exit::{Exit, Failure, of_io};
@@ -100,7 +100,7 @@ pub(super) fn save_mesh(
     })
 }
 
-/// How a band is stored.
+/// Returns the options of a `.vdb` file.
 pub(super) fn vdb_options(arguments: &OutputArguments) -> VdbOptions {
     VdbOptions {
         compression: match arguments.vdb_compression {

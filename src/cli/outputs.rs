@@ -24,7 +24,7 @@ pub(super) struct Staging {
 struct State {
     /// Hidden directories beside the targets.
     directories: Vec<TempDir>,
-    /// Where each file lies, and where it belongs.
+    /// The staged path and the target of each file.
     files: Vec<(PathBuf, PathBuf)>,
 }
 

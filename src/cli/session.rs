@@ -1,4 +1,4 @@
-//! What all commands share: verbosity, threads, the interrupt, the time.
+//! State that all commands share: verbosity, threads, the interrupt, the time.
 
 use super::args::Common;
 use super::exit::{Exit, Failure, of_io, say, say_interrupted};
@@ -9,7 +9,7 @@ use std::io::{IsTerminal, Write};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// How much to say.
+/// Verbosity of the messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Verbosity {
     /// Errors only.
@@ -108,7 +108,7 @@ pub(super) fn print(text: &str) -> Result<(), Failure> {
     printed(writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush()))
 }
 
-/// What came of printing.
+/// Turns an error of printing into a failure.
 pub(super) fn printed(result: std::io::Result<()>) -> Result<(), Failure> {
     match result {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::new(

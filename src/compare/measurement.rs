@@ -1,4 +1,4 @@
-//! What one run of one method says about itself, and the medians over several.
+//! The measurement of one run of one method, and medians over several.
 
 use super::Method;
 use serde::{Deserialize, Serialize};

@@ -55,7 +55,7 @@ impl Method {
         }
     }
 
-    /// What is called, in one line.
+    /// Returns the calls of the method, in one line.
     pub fn recipe(self) -> &'static str {
         match self {
             Method::Exocarp => "hierarchy, band, edges, contour",
@@ -76,7 +76,7 @@ impl Method {
         Method::ALL.into_iter().find(|m| m.name() == name)
     }
 
-    /// What the method needs beside this program.
+    /// Returns the program that the method needs beside this one.
     pub fn needs(self) -> Needs {
         match self {
             Method::MeshlibStandard | Method::MeshlibSharp => Needs::Meshlib,
@@ -98,7 +98,7 @@ impl Method {
     }
 }
 
-/// What a method needs beside this program.
+/// A program that a method needs beside this one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Needs {
     /// Nothing.

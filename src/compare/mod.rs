@@ -41,7 +41,7 @@ use crate::verify::{VerifyReport, VerifySettings, verify};
 use serde::Serialize;
 use std::time::Duration;
 
-/// What to compare.
+/// Settings of a comparison.
 #[derive(Clone, Debug)]
 pub struct CompareSettings {
     /// Signed distance: positive grows.
@@ -74,7 +74,7 @@ impl Default for CompareSettings {
     }
 }
 
-/// What came of a comparison.
+/// Result of a comparison.
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
     /// Triangles of the cleaned input.
@@ -91,13 +91,13 @@ pub struct Comparison {
     pub runs: u32,
     /// The machine: cores and family of the processor.
     pub machine: String,
-    /// What each method did, in the order asked for.
+    /// Results of the methods, in the order of the settings.
     pub results: Vec<MethodResult>,
     /// Sentences about what was left out.
     pub notes: Vec<String>,
 }
 
-/// What one method did.
+/// Result of one method.
 #[derive(Clone, Debug, Serialize)]
 pub struct MethodResult {
     /// The method.
@@ -108,14 +108,14 @@ pub struct MethodResult {
     pub runs: Vec<Measurement>,
     /// Why a run failed, after which there were no more.
     pub lost: Option<Lost>,
-    /// What its last output is worth.
+    /// Quality of the last output.
     pub quality: Option<VerifyReport>,
     /// The method's last output.
     #[serde(skip)]
     pub mesh: Option<TriMesh>,
 }
 
-/// What is happening, for those who wait.
+/// An event of a comparison that runs.
 #[derive(Clone, Debug)]
 pub enum Event<'a> {
     /// A run begins: its number, from 1, and the method.

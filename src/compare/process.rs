@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-/// How processes are started.
+/// The programs that run the methods.
 #[derive(Clone, Debug)]
 pub struct Programs {
     /// A program that does a [`Job`] with [`work`](super::work) when called with
@@ -45,7 +45,7 @@ impl std::fmt::Display for Lost {
 /// The script that MeshLib's methods run.
 const MESHLIB: &str = include_str!("meshlib.py");
 
-/// How often a process is looked after: also the delay of an interrupt.
+/// Time between two looks at a process: also the delay of an interrupt.
 const POLL: Duration = Duration::from_millis(10);
 
 /// Importing the package takes a second; a disk that is asleep may take ten.

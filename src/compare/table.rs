@@ -10,14 +10,14 @@ pub struct Column {
     pub name: &'static str,
     /// Unit, below the heading; may be empty.
     pub unit: &'static str,
-    /// What the column says, in a sentence.
+    /// Meaning of the column, in a sentence.
     pub about: &'static str,
     cell: fn(&Measurement, &VerifyReport) -> Option<f64>,
     show: fn(f64) -> String,
     best: Best,
 }
 
-/// Which end of a column is the good one.
+/// The good end of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Best {
     Lowest,

@@ -10,7 +10,7 @@ use crate::vdb::{BandWidths, Scheme, VdbLevelSet};
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// What one process does.
+/// The run of one process.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Job {
     /// The method.
@@ -21,7 +21,7 @@ pub struct Job {
     pub distance: f64,
     /// Voxel size in model units.
     pub voxel: f64,
-    /// Where the offset surface goes, as binary PLY.
+    /// Path of the offset surface, written as binary PLY.
     pub output: PathBuf,
 }
 

@@ -1,4 +1,4 @@
-//! What can go wrong with a mesh file: each error is one sentence with file, place, cause and remedy.
+//! Errors of mesh files: each is one sentence with file, place, cause and remedy.
 
 use std::path::PathBuf;
 
@@ -85,21 +85,21 @@ pub enum LoadErrorKind {
     WrongFormat {
         /// The format that the extension stands for.
         format: Format,
-        /// What gave it away.
+        /// Evidence for the wrong format.
         reason: String,
     },
     /// The file ends too early.
     #[error("the file ends before {missing}; it was cut off, get a complete copy")]
     Truncated {
-        /// What should have followed.
+        /// Text that should have followed.
         missing: String,
     },
     /// Something else stands where a certain thing belongs.
     #[error("{found} stands where {expected} belongs; correct it or export the model again")]
     Syntax {
-        /// What stands there.
+        /// Text that stands in the file.
         found: String,
-        /// What belongs there.
+        /// Description of the text that belongs there.
         expected: String,
     },
     /// A coordinate is infinite or not a number.
@@ -123,7 +123,7 @@ pub enum LoadErrorKind {
     Unsupported {
         /// The variant.
         what: String,
-        /// What to do instead.
+        /// Remedy, as the rest of a sentence.
         remedy: &'static str,
     },
     /// More vertices than 32-bit numbers can name.

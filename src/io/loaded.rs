@@ -6,7 +6,7 @@ use super::error::{LoadErrorKind, Location, ReadError};
 use super::polygon::PolygonMesh;
 use crate::mesh::TriMesh;
 
-/// What [`load_with_notes`](super::load_with_notes) returns.
+/// Result of [`load_with_notes`](super::load_with_notes).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Loaded {
     /// The mesh.
@@ -14,7 +14,7 @@ pub struct Loaded {
     /// The vertices of the file that are not in the mesh, since a coordinate is not finite: their numbers,
     /// counted from 0, ascending. The others keep their order.
     pub left_out: Vec<u32>,
-    /// What a user should know of.
+    /// Notes that a user should read.
     pub notes: Vec<Note>,
 }
 
@@ -24,9 +24,9 @@ pub struct Loaded {
 pub struct Note {
     /// The file.
     pub path: PathBuf,
-    /// Where in the file; the first place, if there are several.
+    /// Location in the file; the first one, if there are several.
     pub location: Location,
-    /// What was passed over.
+    /// The part of the file that was passed over.
     pub passed: Passed,
 }
 
@@ -36,7 +36,7 @@ impl std::fmt::Display for Note {
     }
 }
 
-/// What was passed over.
+/// A part of a file that was passed over.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Passed {
@@ -44,7 +44,7 @@ pub enum Passed {
     HeaderLines {
         /// The first one, quoted.
         first: String,
-        /// How many there are.
+        /// Number of lines.
         lines: usize,
     },
     /// A number of triangles in a binary STL file that does not fit its size.
@@ -58,9 +58,9 @@ pub enum Passed {
     NonFinite {
         /// The first such coordinate.
         coordinate: String,
-        /// How many vertices were left out.
+        /// Number of vertices that were left out.
         vertices: usize,
-        /// How many faces used them, and were left out too.
+        /// Number of faces that used them, and were left out too.
         faces: usize,
     },
 }
@@ -106,13 +106,13 @@ pub(super) struct NonFinite {
     pub(super) coordinate: String,
 }
 
-/// What a reader makes of a file.
+/// A file as its reader leaves it.
 #[derive(Default)]
 pub(super) struct Content {
     pub(super) mesh: PolygonMesh,
     /// The first coordinate that is not finite; where there is none, all vertices are finite.
     pub(super) non_finite: Option<NonFinite>,
-    /// What else was passed over.
+    /// Other parts that were passed over.
     pub(super) passed: Vec<(Location, Passed)>,
 }
 

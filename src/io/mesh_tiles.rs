@@ -97,7 +97,7 @@ struct TileFile {
     vertices: u64,
     triangles: u64,
     coordinates: Coordinates,
-    /// Where the vertices begin, or the triangles of STL.
+    /// First byte of the vertices, or of the triangles of STL.
     body: u64,
 }
 
@@ -196,7 +196,7 @@ impl TileFile {
         }
     }
 
-    /// Where the faces begin.
+    /// Returns the first byte of the faces.
     fn faces(&self) -> u64 {
         self.body + self.vertices * self.vertex() as u64
     }

@@ -129,7 +129,7 @@ impl Coordinates {
     }
 }
 
-/// How a mesh is written.
+/// Options for writing a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SaveOptions {
     /// The number type of coordinates. STL knows single precision only. In text (OBJ, OFF) there are as many

@@ -52,15 +52,15 @@ pub(super) fn read<R: Read + Seek>(source: R) -> Result<Content, ReadError> {
 /// The lines that `tobj` gets to see.
 struct Filter<R> {
     text: Text<R>,
-    /// What stands in for the present line.
+    /// Replacement of the present line.
     output: Vec<u8>,
-    /// How much of `output` was consumed.
+    /// Number of bytes of `output` that were consumed.
     consumed: usize,
     /// Why reading stopped, if it did; `tobj` cannot carry it.
     error: Option<ReadError>,
 }
 
-/// What a line is about.
+/// Kind of a line.
 #[derive(PartialEq)]
 enum Statement {
     Vertex,
@@ -165,7 +165,7 @@ impl<R: BufRead> Read for Filter<R> {
 }
 
 impl<R: BufRead + Seek> Filter<R> {
-    /// What `error` means and where it is. While lines are parsed, the filter stands on the culprit.
+    /// Returns the meaning and the location of `error`. While lines are parsed, the filter stands on the culprit.
     fn explain(&mut self, error: tobj::LoadError) -> ReadError {
         if let Some(error) = self.error.take() {
             return error;

@@ -31,7 +31,7 @@ pub(super) struct PolygonMesh {
 
 /// A polygon of [`PolygonMesh::corners`].
 struct Polygon {
-    /// How many triangles come before it.
+    /// Number of triangles before the polygon.
     position: usize,
     /// First corner of the polygon; the last one is before the first of the next polygon.
     first: usize,

@@ -22,7 +22,7 @@ use crate::mesh::TriMesh;
 pub(super) const HEAD: usize = 84;
 /// A triangle of a binary file: normal and corners as twelve f32, and two bytes of attributes.
 pub(super) const RECORD: usize = 50;
-/// How much of a file is looked at to tell text from binary data. A binary file has zero bytes before
+/// Number of bytes that are looked at to tell text from binary data. A binary file has zero bytes before
 /// this, at the latest in its count; an ascii file has none at all.
 const PROBE: usize = 1024;
 
@@ -83,7 +83,7 @@ fn is_text(probe: &[u8]) -> bool {
     keyword && !probe.contains(&0)
 }
 
-/// What the last two bytes of a triangle are.
+/// Meaning of the last two bytes of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Attributes {
     /// Anything: a colour, mostly zero.

@@ -13,7 +13,7 @@ use super::loaded::NonFinite;
 /// does not get to fill the memory.
 const LONGEST_LINE: usize = 1 << 26;
 
-/// What some programs write before the first character of UTF-8 text.
+/// Mark that some programs write before the first character of UTF-8 text.
 pub(super) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Reads a text file line by line and a line word by word. Lines end with LF, CRLF or CR; a byte order mark
@@ -23,7 +23,7 @@ pub(super) struct Text<R> {
     format: Format,
     line: Vec<u8>,
     number: u64,
-    /// Where in `line` the next word is looked for.
+    /// Byte of `line` at which the next word is looked for.
     next: usize,
     /// Begins a comment that ends with the line.
     comment: Option<u8>,
@@ -178,7 +178,7 @@ impl<R: BufRead + Seek> Text<R> {
     }
 }
 
-/// How a line ended.
+/// End of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ended {
     /// With LF or CRLF.
@@ -234,7 +234,7 @@ fn step_over_line_feed(reader: &mut impl BufRead) -> std::io::Result<bool> {
     Ok(length > 0)
 }
 
-/// What follows "1." in numbers that are none, where Microsoft's C library wrote them.
+/// Text after "1." in numbers that are none, as Microsoft's C library writes them.
 const NO_NUMBERS: [&[u8]; 4] = [b"#IND", b"#QNAN", b"#SNAN", b"#INF"];
 
 /// Whether a word that is no number in Rust is what a C library writes where there is none: `-nan(ind)`,
@@ -245,7 +245,7 @@ pub(super) fn is_not_finite(word: &[u8]) -> bool {
         || word.strip_prefix(b"1.").is_some_and(|rest| NO_NUMBERS.iter().any(|name| rest.starts_with(name)))
 }
 
-/// Where the comment of a line begins, behind `start`: not in the midst of `1.#IND`.
+/// Returns the first byte of a line's comment, behind `start`: not in the midst of `1.#IND`.
 fn comment(line: &[u8], start: usize, mark: u8) -> Option<usize> {
     let is_number =
         |at: usize| line[..at].ends_with(b"1.") && NO_NUMBERS.iter().any(|name| line[at..].starts_with(name));

@@ -3,12 +3,12 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Which share of which work a tile is.
+/// The share of a tile, and the work that it is a share of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tile {
     /// Number of the tile, from 1.
     pub number: u32,
-    /// How many tiles there are.
+    /// Number of tiles.
     pub of: u32,
     /// Identifies the input and the settings: tiles with different ones do not belong together.
     pub job: u64,
@@ -49,7 +49,7 @@ pub enum MergeErrorKind {
     Missing {
         /// Number of the tile, from 1.
         number: u32,
-        /// How many there are.
+        /// Number of tiles.
         of: u32,
     },
     /// A vertex that another tile should have is nowhere.

@@ -1,4 +1,4 @@
-//! What the tables have in common: models, offsets, and the stages before contouring.
+//! Common parts of the tables: models, offsets, and the stages before contouring.
 
 use super::PaperError;
 use super::PaperSettings;
@@ -25,7 +25,7 @@ pub(super) struct Field {
 }
 
 impl Lab<'_> {
-    /// What stands for a model of the paper.
+    /// Loads the stand-in for a model of the paper.
     pub fn model(&self, of: PaperModel) -> Result<Model, PaperError> {
         self.refined_model(of, 1)
     }
@@ -94,7 +94,7 @@ impl Lab<'_> {
         Ok((!numbers.is_empty()).then_some(Field { settings, signs, numbers, near }))
     }
 
-    /// How the run was done, for the foot of a table.
+    /// Returns the conditions of the run, for the foot of a table.
     pub fn conditions(&self) -> String {
         let nodes = u64::from(self.settings.resolution) + 1;
         let threads = self.run.threads();

@@ -94,7 +94,7 @@ impl Table {
     }
 }
 
-/// What to measure on.
+/// Settings of the tables.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PaperSettings {
     /// Cells along the longest side where the paper has 512.

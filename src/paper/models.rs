@@ -27,7 +27,7 @@ pub(super) enum PaperModel {
     Buddha,
 }
 
-/// What stands for a model.
+/// A stand-in for a model.
 struct StandIn {
     /// The paper's name.
     name: &'static str,

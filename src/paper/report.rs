@@ -62,7 +62,7 @@ pub struct Report {
     pub columns: Vec<&'static str>,
     /// As many entries per row as there are columns.
     pub rows: Vec<Vec<Cell>>,
-    /// What a reader must know.
+    /// Notes for the reader.
     pub notes: Vec<String>,
 }
 

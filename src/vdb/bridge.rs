@@ -14,7 +14,7 @@ pub(super) mod ffi {
         memory: u64,
     }
 
-    /// How the values are compressed in a file.
+    /// Compression of the values in a file.
     enum Codec {
         Blosc,
         Zip,
@@ -36,7 +36,7 @@ pub(super) mod ffi {
         integer: i64,
     }
 
-    /// How much of a file is read.
+    /// Depth to which a file is read.
     enum Depth {
         /// The grids' names and types.
         Names,
@@ -57,7 +57,7 @@ pub(super) mod ffi {
         metadata: Vec<MetaItem>,
     }
 
-    /// What the transform of a grid does.
+    /// Transform of a grid.
     struct Placement {
         /// Whether it is an affine map at all.
         linear: bool,
@@ -65,7 +65,7 @@ pub(super) mod ffi {
         frame: [f64; 12],
     }
 
-    /// What a file holds.
+    /// Contents of a file.
     struct Contents {
         /// Version of the file format.
         format: u32,

@@ -9,7 +9,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-/// Where the UUID stands, as text: after magic (8), format (4), library (8), has-offsets (1).
+/// First byte of the UUID, which is text: after magic (8), format (4), library (8), has-offsets (1).
 const START: usize = 21;
 const LENGTH: usize = 36;
 /// The digit of the text that is the UUID's version, and what this module writes there.

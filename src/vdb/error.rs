@@ -43,7 +43,7 @@ pub enum VdbError {
     MissingGrid {
         /// The file.
         path: PathBuf,
-        /// What was looked for.
+        /// Name of the grid that was looked for.
         wanted: String,
         /// The grids that are there, each with its type.
         present: Vec<String>,
@@ -55,7 +55,7 @@ pub enum VdbError {
         path: PathBuf,
         /// The grid's name.
         grid: String,
-        /// What is wrong with it, as the rest of a sentence.
+        /// Fault, as the rest of a sentence.
         reason: String,
     },
     /// Voxel size or half width cannot be used.
@@ -73,7 +73,7 @@ pub enum VdbError {
     Length {
         /// The number of leaves or blocks.
         count: usize,
-        /// What the slice holds.
+        /// Contents of the slice.
         what: &'static str,
         /// The length that it should have.
         expected: usize,
@@ -142,7 +142,7 @@ impl From<cxx::Exception> for VdbError {
     }
 }
 
-/// What an exception or a system error says, in one line and without what only programmers know.
+/// Returns the text of an exception or a system error, in one line and without what only programmers know.
 fn sentence(reason: impl ToString) -> String {
     let text = reason.to_string();
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");

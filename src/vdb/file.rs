@@ -13,7 +13,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// How the values in a file are compressed. In all cases inactive values are left out, since a level set has
+/// Compression of the values in a file. In all cases inactive values are left out, since a level set has
 /// two of them only. Bands of 2% at 256 voxels, in MB, without compression, with Zip and with Blosc: fandisk
 /// 4.28, 3.01, 2.86; armadillo 3.99, 3.95, 3.81. Values are distances, whose last digits are noise unless
 /// surfaces are plane.
@@ -28,7 +28,7 @@ pub enum Compression {
     None,
 }
 
-/// How the values of the surface are stored in a file.
+/// Number type of the surface's values in a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum VdbPrecision {
     /// 32-bit floats: what is in memory, bit for bit.
@@ -50,7 +50,7 @@ pub enum MetaValue {
     Integer(i64),
 }
 
-/// How a file is written, and what it says about itself.
+/// Options for writing a file, and its metadata.
 ///
 /// Besides what is given here, a file's metadata hold `creator` (program and version), `voxel_size` (model
 /// units) and `half_width` (voxels).
@@ -183,7 +183,7 @@ fn find(path: &Path, name: Option<&str>, usual: &str, value_type: &str) -> Resul
     })
 }
 
-/// What a file holds, after a look at its first bytes.
+/// Returns the contents of a file, after a look at its first bytes.
 pub(super) fn contents(path: &Path, depth: ffi::Depth) -> Result<ffi::Contents, VdbError> {
     // The number that every file begins with: " BDV" as a little-endian 64-bit integer.
     const MAGIC: [u8; 8] = *b" BDV\0\0\0\0";

@@ -11,7 +11,7 @@ use cxx::UniquePtr;
 /// file by their names, whatever their order in it, and many programs take the first one.
 pub(super) const CLOSEST: &str = "surface_closest";
 
-/// Who made a grid, as other programs show it.
+/// Creator of a grid, as other programs show it.
 pub(super) const CREATOR: &str = concat!("exocarp ", env!("CARGO_PKG_VERSION"));
 
 /// OpenVDB refuses scales whose cube is below 3e-15.
@@ -187,7 +187,7 @@ impl SurfaceGrid {
         inside
     }
 
-    /// What OpenVDB's `tools::checkLevelSet` finds wrong, one message for each of its nine tests that
+    /// Returns the findings of OpenVDB's `tools::checkLevelSet`, one message for each of its nine tests that
     /// fails; empty if the level set is clean.
     ///
     /// ```text

@@ -1,4 +1,4 @@
-//! What a `.vdb` file holds, without reading the values.
+//! Contents of a `.vdb` file, without its values.
 
 use super::VdbError;
 use super::bridge::ffi;

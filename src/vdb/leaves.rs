@@ -43,7 +43,7 @@ pub(super) fn check_block(origin: Ijk, side: u32) -> Result<(), VdbError> {
     }
 }
 
-/// What is wrong with the values of leaves as parts of a level set, if anything: the invariants at the
+/// Returns the fault of leaves' values as parts of a level set, if any: the invariants at the
 /// head of [`vdb`](super).
 pub(super) fn level_set_fault(
     origins: &[Ijk],

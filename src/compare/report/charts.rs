@@ -6,7 +6,7 @@ use crate::compare::{Comparison, Measurement, Method};
 use crate::verify::VerifyReport;
 
 const WIDTH: f64 = 1080.0;
-/// Where bars begin: room for the longest name of a method.
+/// Left end of the bars, in pixels: room for the longest name of a method.
 const LEFT: f64 = 215.0;
 /// Room for the numbers behind the longest bar.
 const RIGHT: f64 = 130.0;

@@ -4,7 +4,7 @@ use super::plane::Plane;
 use crate::mesh::TriMesh;
 use glam::{DVec2, DVec3};
 
-/// What is looked at: the picture plane, looked at against its normal, and half the width of the
+/// A camera: the picture plane, seen against its normal, and half the width of the
 /// picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
@@ -14,7 +14,7 @@ pub struct Camera {
     pub half: f64,
 }
 
-/// What one pixel shows.
+/// The triangle that one pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// The triangle.
@@ -57,7 +57,7 @@ impl Camera {
         Camera { plane, half }
     }
 
-    /// Where a pixel's middle lies on the picture plane.
+    /// Returns the point of a pixel's middle on the picture plane.
     pub fn on_plane(&self, column: usize, row: usize, size: usize) -> DVec2 {
         let scale = 2.0 * self.half / size as f64;
         DVec2::new((column as f64 + 0.5) * scale - self.half, self.half - (row as f64 + 0.5) * scale)

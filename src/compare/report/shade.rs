@@ -18,7 +18,7 @@ pub enum Wires {
     Hidden,
 }
 
-/// What the colours measure.
+/// The true offset, from which the colours measure the error.
 #[derive(Clone, Copy)]
 pub struct Truth<'a, 'm> {
     /// The model.

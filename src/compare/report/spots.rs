@@ -1,4 +1,4 @@
-//! Where to look: the worst spot of each method, and the sharpest crease.
+//! Spots for pictures: the worst of each method, and the sharpest crease.
 
 use super::plane::Plane;
 use crate::compare::{Comparison, Method};
@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// A place worth a picture.
 #[derive(Clone, Debug)]
 pub struct Spot {
-    /// What the true offset surface has there.
+    /// The reason for the picture.
     pub kind: Kind,
     /// The methods whose largest error is there.
     pub worst: Vec<Method>,

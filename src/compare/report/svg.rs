@@ -10,7 +10,7 @@ pub struct Svg {
     body: String,
 }
 
-/// Where a text stands relative to its point.
+/// Alignment of a text at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     /// The text begins at its position.

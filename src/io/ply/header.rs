@@ -31,7 +31,7 @@ pub(super) const WANTED: &str = "wanted";
 /// no end of the header is not read to its end to find out.
 const LONGEST_HEADER: u64 = 1 << 20;
 
-/// What the header says.
+/// The contents of a header.
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<(Role, ElementDef)>,
@@ -55,20 +55,20 @@ pub(super) struct SkippedLines {
 }
 
 impl SkippedLines {
-    /// What to tell the user.
+    /// Returns the note for the user.
     pub(super) fn passed(self) -> (Location, Passed) {
         let SkippedLines { line, first, count } = self;
         (Location::Line(line), Passed::HeaderLines { first, lines: count })
     }
 
-    /// What is wrong where they should not have been skipped.
+    /// Returns the error where the lines should not have been skipped.
     pub(super) fn error(self) -> ReadError {
         let expected = EXPECTED.into();
         LoadErrorKind::Syntax { found: self.first, expected }.on_line(self.line)
     }
 }
 
-/// What stands in a header.
+/// Description of a header's line, for errors.
 const EXPECTED: &str = "a PLY header line (format, element, property)";
 
 /// Reads the header; `reader` then stands on the first byte of the body. The scalar property `wanted` of the

@@ -77,7 +77,7 @@ fn read_body<R: Read + Seek>(
     }
 }
 
-/// What an element is to us.
+/// Role of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Role {
     /// The element's `x`, `y`, `z` are a vertex.
@@ -93,7 +93,7 @@ enum Role {
 /// The names of the list of vertex numbers.
 const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
-/// What matters of a vertex.
+/// The properties of a vertex that are read.
 #[derive(Clone, Copy, Debug)]
 struct Vertex {
     position: [f64; 3],
@@ -106,7 +106,7 @@ impl Vertex {
     const UNKNOWN: Vertex = Vertex { position: [f64::NAN; 3], wanted: f64::NAN };
 }
 
-/// What is read of a file.
+/// The part of a file that is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Wanted {
     /// The mesh alone.
