@@ -1,57 +1,71 @@
-//! The list of a block, with bounds: most of its triangles are passed over for most of its points.
+//! The candidates of one block with bounds, by which most triangles are passed over for most
+//! points.
 
 use crate::geom::simd::{F32s, F64s, Vec3F32s, dispatch};
 use crate::ssvh::{Closest8, Hit, Ssvh};
 use glam::DVec3;
 use pulp::{Simd, WithSimd};
 
-/// How near a triangle comes to the points around the centre of a block's nodes: at c + x at least `low` + `direction` . x,
-/// since it lies beyond the plane through its closest point. In voxels.
+/// A lower bound of the distance from one triangle to the points around a block's centre c, in
+/// voxels.
+///
+/// The distance at c + x is at least `low` + `direction` . x, since the triangle lies beyond the
+/// plane through its closest point to c.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PlaneBound {
-    /// At the centre.
+    /// The bound at the centre.
     pub low: f32,
     /// The unit vector from the triangle.
     pub direction: [f32; 3],
 }
 
-/// Steps of a direction's coordinates. As many as fit.
-const DIRECTIONS: f32 = 127.0;
+/// Steps of a direction's coordinate between 0 and 1: as many as fit into 8 bits with a sign.
+const DIRECTION_STEPS: f32 = 127.0;
 
-/// Steps of a voxel: 8 voxels fit, three times what a list of this extent has.
-const STEPS: f32 = 32.0;
+/// Steps of a bound in a voxel: 8 voxels fit into 8 bits, three times what a list of this extent
+/// has.
+const STEPS_PER_VOXEL: f32 = 32.0;
 
-/// The largest sum of the coordinates, in size, of a point in the cells of a block of 2^3 nodes, from the centre of the
-/// nodes, in voxels.
-const FARTHEST: f32 = 4.5;
+/// The largest sum of the absolute coordinates, in voxels from the centre of the nodes, of a point
+/// in the cells of a block of 2^3 nodes.
+const MAX_SUM: f32 = 4.5;
 
-/// What rounding of the direction takes from a bound at most, with a little for the sums.
-const LOSS: f32 = FARTHEST * 0.5 / DIRECTIONS + 1e-4;
+/// The most that rounding of the direction takes from a bound, in voxels, with a little for the
+/// sums.
+const DIRECTION_ERROR: f32 = MAX_SUM * 0.5 / DIRECTION_STEPS + 1e-4;
 
-/// What a distance is multiplied with, so that it is not below the exact one after a few roundings.
-const ROUNDED: f32 = 1.0 + 4.0 * f32::EPSILON;
+/// Factor that keeps a distance in f32 from being below the exact one after a few roundings.
+const ROUND_UP: f32 = 1.0 + 4.0 * f32::EPSILON;
 
-/// Candidates whose bounds are computed together: most lists are shorter.
-const TOGETHER: usize = 64;
+/// Number of candidates whose bounds are computed together. Most lists are shorter.
+const CHUNK: usize = 64;
 
-/// In lists longer than this, what is nearest among the first is where the hierarchy starts from: thickening a patch of 827,000
-/// triangles at 128 voxels asks such lists, and its shape processing takes 0.12 s that way, 0.3 s without.
-const LONG: usize = 512;
+/// Length of a list beyond which the hierarchy is asked instead, starting from the nearest triangle
+/// of the first chunk. Thickening a patch of 827,000 triangles at 128 voxels asks such lists; its
+/// shape processing takes 0.12 s that way, 0.3 s by the lists alone.
+const LONG_LIST: usize = 512;
 
-/// No bound is below this: distances are not negative, and the direction adds at most the length of a diagonal.
-const LOWEST: f32 = -FARTHEST;
+/// The least bound that means anything, in voxels: distances are not negative, and the direction
+/// adds at most the length of a diagonal.
+const MIN_BOUND: f32 = -MAX_SUM;
 
-/// A bound in 32 bits, from the lowest on: 8 for each coordinate of the direction in units of 1 / [`DIRECTIONS`], and 8 for
-/// how far the bound at the centre is above `base` in units of 1 / [`STEPS`]. `base` is at most that, as [`base`] gives it.
+/// Packs a bound into 32 bits.
+///
+/// From the lowest bits on: 8 bits for each coordinate of the direction, in units of 1 /
+/// [`DIRECTION_STEPS`], then 8 bits for the bound at the centre above `base`, in units of 1 /
+/// [`STEPS_PER_VOXEL`]. `base` is at most the bound at the centre; the function [`base`] returns
+/// one.
 #[inline(always)]
 pub(super) fn packed(bound: PlaneBound, base: f32) -> u32 {
-    let [x, y, z] = bound.direction.map(|d| byte(d * DIRECTIONS + DIRECTIONS));
+    let [x, y, z] = bound.direction.map(|d| byte(d * DIRECTION_STEPS + DIRECTION_STEPS));
     // Rounded to the nearest after half a step was taken off is rounded down.
-    let above = byte((bound.low.max(LOWEST) - base) * STEPS - 0.5);
+    let above = byte((bound.low.max(MIN_BOUND) - base) * STEPS_PER_VOXEL - 0.5);
     u32::from_le_bytes([x, y, z, above])
 }
 
-/// The nearest number in 0..=255. Next to 2^23 the last place of an f32 is one, so that adding it rounds: several times
+/// Rounds to the nearest number in 0..=255.
+///
+/// Next to 2^23 the last place of an f32 is one, so adding 2^23 rounds. That is several times
 /// faster than a cast.
 #[inline(always)]
 #[allow(clippy::manual_clamp, reason = "what is not a number becomes 0")]
@@ -59,47 +73,51 @@ fn byte(x: f32) -> u8 {
     (x.max(0.0).min(255.0) + 8_388_608.0).to_bits() as u8
 }
 
-/// The base of a list with the given bounds.
+/// Returns the base of a list with these bounds: the least of them.
 pub(super) fn base(bounds: &[PlaneBound]) -> f32 {
-    bounds.iter().fold(f32::INFINITY, |base, bound| base.min(bound.low.max(LOWEST)))
+    bounds.iter().fold(f32::INFINITY, |base, bound| base.min(bound.low.max(MIN_BOUND)))
 }
 
-/// The triangles that can be closest to a point of a block or of the cells at its nodes.
+/// The triangles that can be closest to a point of a block of 2^3 nodes, or of the cells at its
+/// nodes.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidates<'a> {
-    /// Their slots in the hierarchy.
+    /// Slots of the triangles in the hierarchy.
     pub(super) slots: &'a [u32],
-    /// Their bounds.
+    /// Packed bounds of the triangles.
     pub(super) packed: &'a [u32],
-    /// What the bounds are above.
+    /// Base of the bounds, in voxels.
     pub(super) base: f32,
     /// World position of the centre of the block's nodes.
     pub(super) centre: DVec3,
+    /// Model units to a voxel.
     pub(super) voxel: f64,
 }
 
 impl Candidates<'_> {
-    /// The closest triangle to `p`, a point of the block, as [`Ssvh::closest`] finds it among all.
+    /// Returns the closest triangle to `p`, a point of the block, as [`Ssvh::closest`] finds it
+    /// among all.
     ///
     /// # Panics
     /// When `ssvh` is not the hierarchy that the list was taken from.
     pub fn closest(&self, ssvh: &Ssvh, p: DVec3) -> Hit {
         let scale = 1.0 / self.voxel;
         let x = self.local(p);
-        // Whatever is as near as this comes before it.
+        // Every triangle with a finite distance comes before this one.
         let mut best = Hit { triangle: ssvh.id_at(self.slots[0]), distance_squared: f64::INFINITY };
         let mut most = f32::INFINITY;
-        for (slots, packed) in self.slots.chunks(TOGETHER).zip(self.packed.chunks(TOGETHER)) {
-            let mut bounds = [0.0; TOGETHER];
+        for (slots, packed) in self.slots.chunks(CHUNK).zip(self.packed.chunks(CHUNK)) {
+            let mut bounds = [0.0; CHUNK];
             let least = dispatch(LeastBounds { packed, points: &[x], bounds: &mut bounds });
-            // The one with the least bound is nearest most of the time; after it few others matter.
+            // The triangle with the least bound is nearest most of the time; after it few others
+            // matter.
             let first = bounds.iter().position(|&bound| bound == least).unwrap_or(0);
             bounds.swap(0, first);
             for (n, &bound) in bounds[..slots.len()].iter().enumerate() {
                 if bound > most {
                     continue;
                 }
-                // The first one and that one have changed places.
+                // The first triangle and that one have changed places.
                 let n = match n {
                     0 => first,
                     n if n == first => 0,
@@ -110,23 +128,26 @@ impl Candidates<'_> {
                 if hit.before(&best) {
                     best = hit;
                     let distance = ((best.distance_squared.sqrt() * scale) as f32).next_up();
-                    most = distance + LOSS - self.base;
+                    most = distance + DIRECTION_ERROR - self.base;
                 }
             }
-            if self.slots.len() > LONG {
+            if self.slots.len() > LONG_LIST {
                 return ssvh.closest_from(p, best.triangle);
             }
         }
         best
     }
 
-    /// The same for the first `count` of eight points, whose distances are expected to be at most `expected`, in model
-    /// units: only triangles that can be that near are looked at, and all where there is none. What is returned for
-    /// other points means nothing.
+    /// Returns the closest triangles to the first `count` of eight points, each as
+    /// [`closest`](Self::closest) finds it.
+    ///
+    /// `expected`, in model units, is the distance that the points are expected to have at most.
+    /// Only triangles that can be that near are looked at, and all of them for a point that has
+    /// none. What is returned for the other points means nothing.
     pub fn closest8(&self, ssvh: &Ssvh, points: &[DVec3; 8], count: usize, expected: f64) -> [Hit; 8] {
         let exact = [points.map(|p| p.x), points.map(|p| p.y), points.map(|p| p.z)];
         let near = points.map(|p| self.local(p));
-        let most = ((expected / self.voxel) as f32).next_up() * ROUNDED + (LOSS - self.base);
+        let most = ((expected / self.voxel) as f32).next_up() * ROUND_UP + (DIRECTION_ERROR - self.base);
         let near = &near[..count];
         let kernel = Closest8InBlock { candidates: self, ssvh, exact: &exact, near, most };
         let mut hits = dispatch(kernel);
@@ -138,19 +159,20 @@ impl Candidates<'_> {
         hits
     }
 
-    /// A point in voxels from the centre.
+    /// Returns a point in voxels from the centre.
     #[inline(always)]
     fn local(&self, p: DVec3) -> [f32; 3] {
         ((p - self.centre) * (1.0 / self.voxel)).as_vec3().to_array()
     }
 }
 
-/// The least bound of each candidate at some points, above the base of their list, and the least of all.
+/// Kernel: the least bound of each candidate over some points, above the base of the list. Returns
+/// the least of all.
 struct LeastBounds<'a> {
     packed: &'a [u32],
     points: &'a [[f32; 3]],
     /// Without meaning beyond the last candidate.
-    bounds: &'a mut [f32; TOGETHER],
+    bounds: &'a mut [f32; CHUNK],
 }
 
 impl WithSimd for LeastBounds<'_> {
@@ -176,7 +198,8 @@ impl WithSimd for LeastBounds<'_> {
 
 #[inline(always)]
 fn least_of_8<S: Simd>(simd: S, packed: &[u32; 8], points: &[[f32; 3]], bounds: &mut [f32; 8]) -> F32s<S> {
-    let (direction, step) = (F32s::splat(simd, 1.0 / DIRECTIONS), F32s::splat(simd, 1.0 / STEPS));
+    let (direction, step) =
+        (F32s::splat(simd, 1.0 / DIRECTION_STEPS), F32s::splat(simd, 1.0 / STEPS_PER_VOXEL));
     let minus_one = F32s::splat(simd, -1.0);
     let mut all = F32s::splat(simd, f32::INFINITY);
     for vector in 0..8 / F32s::<S>::COUNT {
@@ -196,13 +219,14 @@ fn least_of_8<S: Simd>(simd: S, packed: &[u32; 8], points: &[[f32; 3]], bounds: 
     all
 }
 
+/// Kernel: the closest candidates to up to eight points.
 struct Closest8InBlock<'a> {
     candidates: &'a Candidates<'a>,
     ssvh: &'a Ssvh,
     exact: &'a [[f64; 8]; 3],
-    /// Those that count.
+    /// The points that count, in voxels from the centre.
     near: &'a [[f32; 3]],
-    /// Candidates with bounds above this do not matter.
+    /// Bound, above the base, beyond which a candidate does not matter.
     most: f32,
 }
 
@@ -213,8 +237,8 @@ impl WithSimd for Closest8InBlock<'_> {
     fn with_simd<S: Simd>(self, simd: S) -> [Hit; 8] {
         let Closest8InBlock { candidates, ssvh, exact, near, most } = self;
         let mut nearest = Closest8::NONE;
-        let mut bounds = [0.0; TOGETHER];
-        for (slots, packed) in candidates.slots.chunks(TOGETHER).zip(candidates.packed.chunks(TOGETHER)) {
+        let mut bounds = [0.0; CHUNK];
+        for (slots, packed) in candidates.slots.chunks(CHUNK).zip(candidates.packed.chunks(CHUNK)) {
             LeastBounds { packed, points: near, bounds: &mut bounds }.with_simd(simd);
             for (&slot, &bound) in slots.iter().zip(&bounds) {
                 if bound > most {

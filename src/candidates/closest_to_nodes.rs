@@ -1,4 +1,4 @@
-//! The closest triangles to the nodes of a block: in f32 who can be, in f64 who is.
+//! The closest triangles to the nodes of a block: in f32 those that can be, in f64 those that are.
 
 use super::bounded_list::PlaneBound;
 use super::triangle_f32::{EightPoints, TriangleF32};
@@ -6,37 +6,43 @@ use crate::geom::simd::{F32s, F64s, Vec3F32s};
 use crate::ssvh::{Closest8, Hit, Ssvh};
 use pulp::{Simd, WithSimd};
 
-/// A triangle whose bound comes near enough to a node.
+/// A triangle whose bound is near enough to a node.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Survivor {
-    /// Its number among the leaf's.
+    /// Number of the triangle among the leaf's.
     number: u32,
-    /// Its distances from the nodes, in voxels.
+    /// Distances of the triangle from the nodes, in voxels.
     distances: [f32; 8],
 }
 
-/// The list of a block of 2^3 nodes, and the nodes. Lengths in voxels, but for `exact`.
+/// Kernel: the closest triangles to the nodes of a block of 2^3 nodes, from the block's list.
+/// Lengths are in voxels, but for `exact`.
 pub(super) struct ClosestToNodes<'a> {
-    /// The leaf's triangles, and their slots in the hierarchy.
+    /// The leaf's triangles.
     pub(super) triangles: &'a [TriangleF32],
+    /// Slots of the leaf's triangles in the hierarchy.
     pub(super) slots: &'a [u32],
-    /// Numbers among them, and their bounds around the block's centre.
+    /// Candidates of the block, as numbers among the leaf's triangles.
     pub(super) list: &'a [u32],
+    /// Bounds of the candidates around the block's centre.
     pub(super) planes: &'a [PlaneBound],
-    /// From the point of the mesh that is nearest to the block's centre to the centre.
+    /// Vector to the block's centre from the point of the mesh that is nearest to it.
     pub(super) from: [f32; 3],
-    /// The nodes from the block's centre and from the leaf's.
+    /// The nodes relative to the block's centre.
     pub(super) around: &'a EightPoints,
+    /// The nodes relative to the leaf's centre.
     pub(super) nodes: &'a EightPoints,
-    /// Rounding of a distance.
+    /// Rounding error of a distance.
     pub(super) slack: f32,
-    /// ClosestToNodes whose distance is not between these need no more than that.
+    /// Distances between which a node needs its exact distance and triangle. Of other nodes only
+    /// the side is needed.
     pub(super) wanted: [f32; 2],
     pub(super) ssvh: &'a Ssvh,
     /// Model units to a voxel.
     pub(super) voxel: f64,
     /// World positions of the nodes.
     pub(super) exact: &'a [[f64; 8]; 3],
+    /// Working memory.
     pub(super) survivors: &'a mut Vec<Survivor>,
 }
 
@@ -109,7 +115,7 @@ impl WithSimd for ClosestToNodes<'_> {
     }
 }
 
-/// Whether any of the numbers of a vector of f64 is at most its limit.
+/// Whether any of the numbers that fill vector number `vector` of f64 is at most its limit.
 #[inline(always)]
 fn any_within<S: Simd>(numbers: &[f32; 8], limits: &[f32; 8], vector: usize) -> bool {
     let lanes = F64s::<S>::COUNT;

@@ -1,11 +1,13 @@
-//! The lists of all blocks of 2^3 nodes that the offset surface may pass, by leaf.
+//! The candidate lists of all blocks of 2^3 nodes that the offset surface may pass, by leaf.
 
 use super::bounded_list::{Candidates, PlaneBound, base, packed};
 use crate::filter::Block;
 use crate::lattice::{Ijk, Lattice, LeafIndex};
 
-/// The number of the block of 2^3 nodes that holds a node, in 0..64 within its leaf: the halves of halves of the leaf
-/// in the order of [`Block::children`](crate::filter::Block::children).
+/// Returns the number of the block of 2^3 nodes that holds a node, in 0..64 within its leaf.
+///
+/// The octants of a leaf, and the octants of each, follow the order of
+/// [`Block::children`](crate::filter::Block::children).
 pub fn block_in_leaf(node: Ijk) -> u32 {
     let bits = |shift: i32| node.0.iter().fold(0, |n, x| 2 * n + (x >> shift & 1)) as u32;
     8 * bits(2) + bits(1)
@@ -15,22 +17,22 @@ pub fn block_in_leaf(node: Ijk) -> u32 {
 #[derive(Clone, Debug, Default)]
 pub struct BlockLists {
     leaves: Vec<Leaf>,
-    /// Per block the end of its list.
+    /// End of each block's list in `slots` and `packed`.
     ends: Vec<usize>,
-    /// Per block what the bounds of its list are above.
+    /// Base of the bounds of each block's list, in voxels.
     bases: Vec<f32>,
-    /// Per candidate its slot in the hierarchy.
+    /// Slot of each candidate in the hierarchy.
     slots: Vec<u32>,
-    /// And its bound, packed.
+    /// Packed bound of each candidate.
     packed: Vec<u32>,
 }
 
 /// The blocks of a leaf that have a list.
 #[derive(Clone, Copy, Debug, Default)]
 struct Leaf {
-    /// By number in the leaf.
+    /// A bit for each block, by its number in the leaf.
     mask: u64,
-    /// The number of the first one's list.
+    /// Number of the first block's list.
     first: usize,
 }
 
@@ -47,7 +49,7 @@ impl BlockLists {
         self.leaves.is_empty()
     }
 
-    /// Takes all out; the room stays.
+    /// Removes all leaves and keeps the memory.
     pub fn clear(&mut self) {
         let BlockLists { leaves, ends, bases, slots, packed } = self;
         leaves.clear();
@@ -62,7 +64,7 @@ impl BlockLists {
         self.leaves.push(Leaf { mask: 0, first: self.ends.len() });
     }
 
-    /// Forgets the last leaf that was begun.
+    /// Removes the last leaf that was begun.
     ///
     /// # Panics
     /// When there is none.
@@ -75,8 +77,10 @@ impl BlockLists {
         self.packed.truncate(end);
     }
 
-    /// Adds the list of the block at `origin` to the last leaf that was begun: slots of triangles in the hierarchy, and
-    /// bounds around the centre of the block's nodes. Blocks of a leaf come by ascending number.
+    /// Adds the list of the block at `origin` to the last leaf that was begun.
+    ///
+    /// `slots` are slots of triangles in the hierarchy, `bounds` their bounds around the centre of
+    /// the block's nodes. Blocks of a leaf come by ascending number.
     ///
     /// # Panics
     /// When no leaf was begun, or the block is not the next.
@@ -93,7 +97,8 @@ impl BlockLists {
         self.ends.push(self.slots.len());
     }
 
-    /// Forgets the lists of the last leaf that was begun but those of some of its blocks, a bit for each number.
+    /// Keeps the lists of some blocks of the last leaf that was begun, and removes the others.
+    /// `keep` has a bit for each block's number.
     ///
     /// # Panics
     /// When no leaf was begun.
@@ -142,35 +147,35 @@ impl BlockLists {
 #[derive(Clone, Debug)]
 pub struct CandidateLists {
     lattice: Lattice,
-    /// Numbers the leaves of all parts.
+    /// Number of each leaf, over all parts.
     index: LeafIndex,
-    /// Per leaf its part, and its number there.
-    places: Vec<(u32, u32)>,
-    /// As they were made: they are not moved together.
+    /// Part of each leaf, and its number there.
+    leaves: Vec<(u32, u32)>,
+    /// Lists as they were made. They are not moved together.
     parts: Vec<BlockLists>,
 }
 
 impl CandidateLists {
-    /// From parts: the lists of some leaves, and the leaves' origins in the same order.
+    /// Combines parts. A part holds the origins of some leaves and their lists in the same order.
     ///
     /// # Panics
     /// When the numbers of leaves differ.
     pub fn new(lattice: Lattice, parts: impl IntoIterator<Item = (Vec<Ijk>, BlockLists)>) -> CandidateLists {
-        let (mut all, mut places, mut lists) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut all, mut leaves, mut lists) = (Vec::new(), Vec::new(), Vec::new());
         for (part, (origins, own)) in (0..).zip(parts) {
             assert_eq!(origins.len(), own.leaves.len(), "lists for each leaf");
-            places.extend((0..origins.len() as u32).map(|n| (part, n)));
+            leaves.extend((0..origins.len() as u32).map(|n| (part, n)));
             all.extend(origins);
             lists.push(own);
         }
-        CandidateLists { lattice, index: LeafIndex::new(&all), places, parts: lists }
+        CandidateLists { lattice, index: LeafIndex::new(&all), leaves, parts: lists }
     }
 
-    /// The triangles that can be closest to a point of the cell whose lowest node is `node`; `None` when the surface is not
-    /// that near.
+    /// Returns the triangles that can be closest to a point of the cell whose lowest node is
+    /// `node`. `None` when the surface is not that near.
     #[inline]
     pub fn of_cell(&self, node: Ijk) -> Option<Candidates<'_>> {
-        let (part, leaf) = self.places[self.index.get(node)?];
+        let (part, leaf) = self.leaves[self.index.get(node)?];
         let List { slots, packed, base } = self.parts[part as usize].list(leaf as usize, node)?;
         let block = Block { origin: Ijk(node.0.map(|x| x & !1)), side: 2 };
         Some(Candidates {
@@ -182,7 +187,8 @@ impl CandidateLists {
         })
     }
 
-    /// The same for a point.
+    /// Returns the triangles that can be closest to `p`, in model units. `None` when the surface is
+    /// not near.
     #[inline]
     pub fn at(&self, p: [f64; 3]) -> Option<Candidates<'_>> {
         // Beyond the lattice, casting saturates, and there is no list.

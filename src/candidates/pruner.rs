@@ -1,4 +1,4 @@
-//! The lists of one leaf, from the hierarchy down to blocks of 2^3 nodes.
+//! Prunes the candidates of one leaf, from the hierarchy down to blocks of 2^3 nodes.
 
 use super::PlaneBound;
 use super::closest_to_nodes::{ClosestToNodes, Survivor};
@@ -10,45 +10,48 @@ use crate::ssvh::{Hit, Ssvh};
 use glam::DVec3;
 use pulp::{Simd, WithSimd};
 
-/// Lists: of the leaf, of its halves, of their halves.
+/// Depths of lists: of the leaf, of its octants of 4^3 nodes, of their octants of 2^3 nodes.
 const LEVELS: usize = 3;
 
-/// Half the diagonal of the largest block that is narrowed to, 4^3 nodes with the cells at them, seen from the centre of
-/// its nodes, in voxels.
-const REACH: f32 = 2.5 * 1.732_051;
+/// Largest distance, in voxels, from the centre of an octant's nodes to a point of the cells at
+/// them. The largest octant has 4^3 nodes.
+const MAX_RADIUS: f32 = 2.5 * 1.732_051;
 
-/// The working memory for the lists of one leaf after the other.
+/// The lists of one leaf after the other, in memory that is used again.
 #[derive(Debug, Default)]
 pub struct CandidatePruner {
-    /// Slots in the hierarchy of the leaf's candidates.
+    /// Slots of the leaf's candidates in the hierarchy.
     slots: Vec<u32>,
-    /// The same triangles, seen from the leaf's centre.
+    /// The leaf's candidates, seen from the leaf's centre.
     triangles: Vec<TriangleF32>,
-    /// Rounding of distances, in voxels.
+    /// Rounding error of a distance, in voxels.
     slack: f32,
     /// Model units to a voxel.
     voxel: f64,
     levels: [Level; LEVELS],
-    /// The list that was asked for last.
-    named: Vec<u32>,
-    /// Those that come near a block's nodes.
+    /// The list that was asked for last, as slots.
+    list_slots: Vec<u32>,
+    /// Working memory of [`ClosestToNodes`].
     survivors: Vec<Survivor>,
 }
 
-/// A block's candidates and what its eight halves' centres say of them. Of the vectors as much counts as there are
-/// candidates; what is behind is left from longer lists.
+/// The candidates of a block, and their bounds around the centres of its eight octants.
+///
+/// Each vector holds `count` elements that count; the rest is left from longer lists.
 #[derive(Debug, Default)]
 struct Level {
     count: usize,
-    /// Numbers in `triangles`.
+    /// Candidates, as numbers among the leaf's triangles.
     list: Vec<u32>,
-    /// Their bounds around the centre of the block itself, where it is of the last level.
+    /// Bounds of the candidates around the block's own centre, on the last level only.
     planes: Vec<PlaneBound>,
-    bounds: Vec<Bound>,
-    /// Per candidate the halves that it matters to, a bit each.
-    matters: Vec<u8>,
-    nearest: [Nearest; 8],
-    /// Those of the block that this one is a half of which are candidates here.
+    /// Bounds of the candidates around the octants' centres.
+    bounds: Vec<Bounds8>,
+    /// Octants that each candidate matters to, a bit each.
+    octants: Vec<u8>,
+    /// NearestCandidate candidate to each octant's centre.
+    nearest: [NearestCandidate; 8],
+    /// Indices into the parent block's list of the candidates that survive in this octant.
     kept: Vec<u32>,
 }
 
@@ -62,28 +65,28 @@ impl Level {
     }
 }
 
-/// How near a triangle comes to the points around eight centres: at c + x at least `low` + `direction` . x, since it lies
-/// beyond the plane through its closest point. Distances in voxels.
+/// Lower bounds of the distance from one triangle to the points around eight centres, in voxels: as
+/// [`PlaneBound`] has it for one centre.
 #[derive(Clone, Copy, Debug, Default)]
-struct Bound {
+struct Bounds8 {
     low: [f32; 8],
     direction: EightPoints,
 }
 
-/// The nearest candidate to a centre.
+/// The nearest candidate to the centre of an octant.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Nearest {
-    /// The distance from it in voxels, but for `error`.
+pub struct NearestCandidate {
+    /// Distance of the candidate from the centre, in voxels, but for `error`.
     pub distance: f32,
-    /// Rounding of the distance.
+    /// Rounding error of the distance, in voxels.
     pub error: f32,
-    /// From its closest point to the centre.
+    /// Vector from the candidate's closest point to the centre, in voxels.
     pub(super) from: [f32; 3],
 }
 
 impl CandidatePruner {
-    /// Collects the candidates of a leaf from the hierarchy, and returns whether there are no more than `most`; otherwise
-    /// there are none to work with. `q` is a point of the mesh near the leaf.
+    /// Collects the candidates of a leaf from the hierarchy. Returns whether there are at most
+    /// `most`; otherwise no list can be used. `q` is a point of the mesh near the leaf.
     pub fn collect(&mut self, ssvh: &Ssvh, lattice: Lattice, leaf: Block, q: DVec3, most: usize) -> bool {
         let centre = leaf.centre(lattice);
         let [x, y, z] = corners(leaf.side).map(|lane| lane.map(f64::from));
@@ -111,32 +114,43 @@ impl CandidatePruner {
         true
     }
 
-    /// Measures the list of `depth` from the centres of the eight halves of its block, given relative to the leaf's
-    /// centre in voxels: which candidates matter to which half, for all points from the half's first node to one voxel
-    /// beyond its last along each axis. The halves have `side` nodes along an axis.
+    /// Measures the list of `depth` from the centres of the eight octants of its block, and decides
+    /// which candidates matter to which octant.
+    ///
+    /// An octant reaches from its first node to one voxel beyond its last node along each axis.
+    /// `centres` are relative to the leaf's centre, in voxels. The octants have `side` nodes along
+    /// an axis.
     pub fn measure(&mut self, depth: usize, centres: &EightPoints, side: i32) {
-        let Level { count, list, bounds, matters, nearest, .. } = &mut self.levels[depth];
+        let Level { count, list, bounds, octants, nearest, .. } = &mut self.levels[depth];
         let list = &list[..*count];
         let bounds = at_least(bounds, *count);
-        *nearest = dispatch(Measure { triangles: &self.triangles, list, centres, slack: self.slack, bounds });
-        let matters = at_least(matters, *count);
-        dispatch(Reach { bounds, nearest, ends: ends(side), slack: self.slack, matters });
+        *nearest = dispatch(MeasureFromCentres {
+            triangles: &self.triangles,
+            list,
+            centres,
+            slack: self.slack,
+            bounds,
+        });
+        let octants = at_least(octants, *count);
+        dispatch(SelectOctants { bounds, nearest, ends: ends(side), slack: self.slack, octants });
     }
 
-    /// What [`measure`](Self::measure) found nearest to the centre of half number `n`.
-    pub fn nearest(&self, depth: usize, n: usize) -> Nearest {
+    /// Returns the nearest candidate to the centre of octant `n`, as [`measure`](Self::measure)
+    /// found it.
+    pub fn nearest(&self, depth: usize, n: usize) -> NearestCandidate {
         self.levels[depth].nearest[n]
     }
 
-    /// Narrows the measured list of `depth` to half number `n`: the list of `depth` + 1.
+    /// Prunes the measured list of `depth` to octant `n`. The result is the list of `depth` + 1.
     pub fn prune(&mut self, depth: usize, n: usize) {
         let [.., parent, child] = &mut self.levels[..depth + 2] else { unreachable!("two levels") };
-        // Every candidate is written, and the next one over it where it does not matter: no branch to guess wrong.
+        // Every candidate is written, and the next one over it where it does not matter: no branch
+        // for the processor to guess wrong.
         let kept = at_least(&mut child.kept, parent.count);
         let mut count = 0;
-        for (row, matters) in (0..).zip(&parent.matters[..parent.count]) {
+        for (row, octants) in (0..).zip(&parent.octants[..parent.count]) {
             kept[count] = row;
-            count += usize::from(matters >> n & 1);
+            count += usize::from(octants >> n & 1);
         }
         child.count = count;
         let kept = &kept[..count];
@@ -145,14 +159,15 @@ impl CandidatePruner {
         }
         if depth + 2 == LEVELS {
             for (plane, &row) in at_least(&mut child.planes, count).iter_mut().zip(kept) {
-                let Bound { low, direction: [x, y, z] } = &parent.bounds[row as usize];
+                let Bounds8 { low, direction: [x, y, z] } = &parent.bounds[row as usize];
                 *plane = PlaneBound { low: low[n], direction: [x[n], y[n], z[n]] };
             }
         }
     }
 
-    /// Whether all nodes of a block of `side` nodes along an axis, whose centre is given relative to the leaf's in voxels, are
-    /// more than `above` voxels over the planes of all triangles in the list of `depth`.
+    /// Whether all nodes of a block are more than `above` voxels over the planes of all triangles
+    /// in the list of `depth`. The block has `side` nodes along an axis; its centre is relative to
+    /// the leaf's, in voxels.
     pub fn is_above(&self, depth: usize, centre: [f32; 3], side: i32, above: f32) -> bool {
         let half = 0.5 * (side - 1) as f32;
         let least = above + self.slack;
@@ -160,7 +175,8 @@ impl CandidatePruner {
         list.iter().all(|&n| self.triangles[n as usize].heights(centre, half)[0] > least)
     }
 
-    /// Whether all of them are under the planes of all triangles in that list, none of which is excepted, by its slot.
+    /// Whether all nodes of a block are under the planes of all triangles in the list of `depth`,
+    /// and no slot of the list is excepted. The block is given as for [`is_above`](Self::is_above).
     pub fn is_below(
         &self,
         depth: usize,
@@ -175,22 +191,25 @@ impl CandidatePruner {
         })
     }
 
-    /// The number of triangles in the list of `depth`.
+    /// Returns the number of triangles in the list of `depth`.
     pub fn count(&self, depth: usize) -> usize {
         self.levels[depth].count
     }
 
-    /// The list of the block of 2^3 nodes that was narrowed to last: slots in the hierarchy, and bounds around the
-    /// block's centre.
+    /// Returns the list of the block of 2^3 nodes that was pruned to last: slots in the hierarchy,
+    /// and bounds around the block's centre.
     pub fn bounded(&self) -> (impl ExactSizeIterator<Item = u32> + '_, &[PlaneBound]) {
         let level = &self.levels[LEVELS - 1];
         (level.list().iter().map(|&n| self.slots[n as usize]), level.planes())
     }
 
-    /// The closest triangles to the nodes of the block of 2^3 nodes that was narrowed to last, as [`Ssvh::closest`] finds
-    /// them among all: half number `n`, with its centre among `centres` as it was measured. `points` are the nodes' world
-    /// positions. Of nodes whose distance is not within `wanted`, two lengths in voxels, only that is known: they get a
-    /// distance on the same side of it, and no triangle.
+    /// Returns the closest triangles to the nodes of the block that was pruned to last, as
+    /// [`Ssvh::closest`] finds them among all.
+    ///
+    /// The block of 2^3 nodes is octant `n`, with its centre among `centres` as it was measured.
+    /// `points` are the nodes' world positions. A node whose distance is outside of `wanted`, the
+    /// least and the largest distance in voxels, gets a distance on the same side of that range,
+    /// and no triangle.
     pub fn closest_to_nodes(
         &mut self,
         n: usize,
@@ -213,7 +232,7 @@ impl CandidatePruner {
             around: &NODES,
             nodes: &nodes,
             slack: self.slack,
-            // Below their rounding, numbers this near are not told apart.
+            // Distances that differ by less than their rounding error are not told apart.
             wanted: [wanted[0] - self.slack, wanted[1] + self.slack],
             ssvh,
             voxel: self.voxel,
@@ -222,16 +241,17 @@ impl CandidatePruner {
         })
     }
 
-    /// Slots in the hierarchy of the list of `depth`.
+    /// Returns the list of `depth`, as slots in the hierarchy.
     pub fn list(&mut self, depth: usize) -> &[u32] {
         let list = self.levels[depth].list().iter();
-        self.named.clear();
-        self.named.extend(list.map(|&n| self.slots[n as usize]));
-        &self.named
+        self.list_slots.clear();
+        self.list_slots.extend(list.map(|&n| self.slots[n as usize]));
+        &self.list_slots
     }
 }
 
-/// The first `count` elements, which the vector has afterwards. They may hold anything.
+/// Returns the first `count` elements of a vector, which grows where it is shorter. The elements
+/// may hold anything.
 fn at_least<T: Clone + Default>(all: &mut Vec<T>, count: usize) -> &mut [T] {
     if all.len() < count {
         all.resize(count, T::default());
@@ -239,42 +259,42 @@ fn at_least<T: Clone + Default>(all: &mut Vec<T>, count: usize) -> &mut [T] {
     &mut all[..count]
 }
 
-/// Where the box of `side` nodes along an axis and the cells at them begins and ends, in voxels from the centre of the
-/// nodes.
+/// Returns the first and the last coordinate of a box of `side` nodes along an axis and the cells
+/// at them, in voxels from the centre of the nodes.
 fn ends(side: i32) -> [f32; 2] {
     [0.5 * (1 - side) as f32, 0.5 * (1 + side) as f32]
 }
 
-/// The corners of that box, z fastest.
+/// Returns the corners of the box that [`ends`] describes, z fastest.
 fn corners(side: i32) -> EightPoints {
     let ends = ends(side);
     std::array::from_fn(|axis| std::array::from_fn(|n| ends[n >> (2 - axis) & 1]))
 }
 
-/// The nodes of a block of 2^3 from their centre, in voxels, z fastest.
+/// The nodes of a block of 2^3 nodes, in voxels from their centre, z fastest.
 const NODES: EightPoints = {
     let (a, b) = (-0.5, 0.5);
     [[a, a, a, a, b, b, b, b], [a, a, b, b, a, a, b, b], [a, b, a, b, a, b, a, b]]
 };
 
-/// Bounds of a list's triangles from eight centres, and the nearest ones.
-struct Measure<'a> {
+/// Kernel: bounds of a list's triangles around eight centres, and the nearest triangle to each.
+struct MeasureFromCentres<'a> {
     triangles: &'a [TriangleF32],
     list: &'a [u32],
     centres: &'a EightPoints,
     slack: f32,
-    bounds: &'a mut [Bound],
+    bounds: &'a mut [Bounds8],
 }
 
-impl WithSimd for Measure<'_> {
-    type Output = [Nearest; 8];
+impl WithSimd for MeasureFromCentres<'_> {
+    type Output = [NearestCandidate; 8];
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> [Nearest; 8] {
-        let Measure { triangles, list, centres, slack, bounds } = self;
+    fn with_simd<S: Simd>(self, simd: S) -> [NearestCandidate; 8] {
+        let MeasureFromCentres { triangles, list, centres, slack, bounds } = self;
         let (mut least, mut from) = ([0.0; 8], [[0.0; 8]; 3]);
         let slacks = F32s::splat(simd, slack);
-        let unknown = F32s::splat(simd, slack * REACH);
+        let unknown = F32s::splat(simd, slack * MAX_RADIUS);
         for vector in 0..8 / F32s::<S>::COUNT {
             let p = Vec3F32s::load(simd, centres, vector);
             let mut nearest = F32s::splat(simd, f32::INFINITY);
@@ -284,14 +304,14 @@ impl WithSimd for Measure<'_> {
                 let nearer = distance.less(nearest);
                 nearest = nearer.select(distance, nearest);
                 way = nearer.select_points(direction, way);
-                // The nearer the triangle, the less its direction is known.
+                // The nearer the triangle, the larger the error of its direction.
                 (distance - slacks - unknown * inverse).store(&mut bound.low, vector);
                 direction.store(&mut bound.direction, vector);
             }
             nearest.store(&mut least, vector);
             way.times(nearest).store(&mut from, vector);
         }
-        std::array::from_fn(|i| Nearest {
+        std::array::from_fn(|i| NearestCandidate {
             distance: least[i],
             error: slack,
             from: [from[0][i], from[1][i], from[2][i]],
@@ -299,23 +319,26 @@ impl WithSimd for Measure<'_> {
     }
 }
 
-/// Which of the measured triangles matter to which half: those that come nearer to one of its corners than the point that
-/// is nearest to its centre. The halves reach from the first to the second of `ends` around their centres.
-struct Reach<'a> {
-    bounds: &'a [Bound],
-    nearest: &'a [Nearest; 8],
+/// Kernel: the octants that each measured triangle matters to.
+///
+/// A triangle matters where it is nearer to one of the octant's corners than the point of the mesh
+/// that is nearest to the octant's centre. An octant is a box from `ends[0]` to `ends[1]` along
+/// each axis, in voxels from its centre.
+struct SelectOctants<'a> {
+    bounds: &'a [Bounds8],
+    nearest: &'a [NearestCandidate; 8],
     ends: [f32; 2],
     slack: f32,
-    matters: &'a mut [u8],
+    octants: &'a mut [u8],
 }
 
-impl WithSimd for Reach<'_> {
+impl WithSimd for SelectOctants<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Reach { bounds, nearest, ends, slack, matters } = self;
-        // How far each corner is from that point, halves side by side.
+        let SelectOctants { bounds, nearest, ends, slack, octants } = self;
+        // Distance of each corner from that point, octants side by side.
         let mut limits = [[[[0.0; 8]; 2]; 2]; 2];
         for (x, limits) in limits.iter_mut().enumerate() {
             for (y, limits) in limits.iter_mut().enumerate() {
@@ -329,7 +352,7 @@ impl WithSimd for Reach<'_> {
             }
         }
         let ends = [F32s::splat(simd, ends[0]), F32s::splat(simd, ends[1])];
-        for (bound, matters) in bounds.iter().zip(matters) {
+        for (bound, octants) in bounds.iter().zip(octants) {
             let mut bits = 0;
             for vector in 0..8 / F32s::<S>::COUNT {
                 let Vec3F32s { x, y, z } = Vec3F32s::load(simd, &bound.direction, vector);
@@ -348,7 +371,7 @@ impl WithSimd for Reach<'_> {
                 }
                 bits |= near.bits(vector);
             }
-            *matters = bits;
+            *octants = bits;
         }
     }
 }

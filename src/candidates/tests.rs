@@ -7,15 +7,16 @@ use crate::ssvh::Ssvh;
 use glam::DVec3;
 use proptest::prelude::*;
 
-/// A mesh whose triangles have nothing to do with one another, among them needles and one that is larger than all else.
+/// A mesh whose triangles have nothing to do with one another, among them needles and one that is
+/// larger than all else.
 fn soup(corners: &[[[f64; 3]; 3]]) -> TriMesh {
     let vertices: Vec<[f64; 3]> = corners.iter().flatten().copied().collect();
     let triangles = (0..corners.len() as u32).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect();
     TriMesh { vertices, triangles }
 }
 
-/// Narrows the lists of the leaf at `origin` and compares each with the hierarchy, at random points of its blocks. Returns
-/// the numbers of triangles in the lists of the three depths.
+/// Prunes the lists of the leaf at `origin` and compares each with the hierarchy, at random points
+/// of its blocks. Returns the numbers of triangles in the lists of the three depths.
 fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]) -> [usize; 3] {
     let ssvh = Ssvh::new(mesh);
     let mut counts = [0; 3];
@@ -35,36 +36,36 @@ fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]
     assert!(pruner.collect(&ssvh, lattice, leaf, q, usize::MAX));
     check(&mut pruner, 0, leaf);
     let centres = |block: Block| {
-        let halves = block.children();
-        let side = halves[0].side;
-        let centre = |half: Block, axis: usize| {
-            (half.origin.0[axis] - origin.0[axis]) as f32 + 0.5 * (side - 1) as f32 - 3.5
+        let octants = block.children();
+        let side = octants[0].side;
+        let centre = |octant: Block, axis: usize| {
+            (octant.origin.0[axis] - origin.0[axis]) as f32 + 0.5 * (side - 1) as f32 - 3.5
         };
-        std::array::from_fn(|axis| halves.map(|half| centre(half, axis)))
+        std::array::from_fn(|axis| octants.map(|octant| centre(octant, axis)))
     };
     pruner.measure(0, &centres(leaf), 4);
-    for (n, half) in leaf.children().into_iter().enumerate() {
+    for (n, octant) in leaf.children().into_iter().enumerate() {
         pruner.prune(0, n);
-        check(&mut pruner, 1, half);
-        pruner.measure(1, &centres(half), 2);
-        for (n, quarter) in half.children().into_iter().enumerate() {
+        check(&mut pruner, 1, octant);
+        pruner.measure(1, &centres(octant), 2);
+        for (n, block) in octant.children().into_iter().enumerate() {
             let distance = f64::from(pruner.nearest(1, n).distance) * lattice.voxel;
-            let exact = ssvh.closest(quarter.centre(lattice)).distance_squared.sqrt();
+            let exact = ssvh.closest(block.centre(lattice)).distance_squared.sqrt();
             let error = f64::from(pruner.nearest(1, n).error) * lattice.voxel;
             assert!((distance - exact).abs() <= error, "{distance} {exact} {error}");
             pruner.prune(1, n);
-            check(&mut pruner, 2, quarter);
-            check_nodes(&mut pruner, n, &centres(half), &ssvh, lattice, quarter);
+            check(&mut pruner, 2, block);
+            check_nodes(&mut pruner, n, &centres(octant), &ssvh, lattice, block);
             let mut lists = BlockLists::default();
             lists.begin_leaf();
             let (slots, bounds) = pruner.bounded();
-            lists.push(quarter.origin, slots, bounds);
+            lists.push(block.origin, slots, bounds);
             let lists = CandidateLists::new(lattice, [(vec![origin], lists)]);
-            let near = lists.of_cell(quarter.origin).unwrap();
+            let near = lists.of_cell(block.origin).unwrap();
             let points: Vec<DVec3> = shares
                 .iter()
                 .map(|&share| {
-                    let node = DVec3::from(quarter.origin.0.map(f64::from));
+                    let node = DVec3::from(block.origin.0.map(f64::from));
                     lattice.voxel * (node + 2.0 * DVec3::from(share))
                 })
                 .collect();
@@ -76,7 +77,7 @@ fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]
                     for expected in [f64::INFINITY, squared.sqrt(), 0.0] {
                         let hits = near.closest8(&ssvh, &points, count, expected);
                         for (hit, &p) in hits.iter().zip(&points).take(count) {
-                            assert_eq!(*hit, ssvh.closest(p), "{quarter:?} {p}");
+                            assert_eq!(*hit, ssvh.closest(p), "{block:?} {p}");
                             assert_eq!(near.closest(&ssvh, p), *hit);
                         }
                     }
@@ -87,7 +88,8 @@ fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]
     counts
 }
 
-/// Compares the closest triangles to the nodes of a block with the hierarchy, for all distances and for some.
+/// Compares the closest triangles to the nodes of a block with the hierarchy, for all distances and
+/// for some.
 fn check_nodes(
     pruner: &mut CandidatePruner,
     n: usize,
@@ -132,16 +134,16 @@ fn lists_name_the_closest_triangle_of_the_hierarchy() {
     let mesh = shapes::carved_cube(12);
     for (voxel, origin) in [(0.05, [8, -8, 16]), (0.01, [0, 40, -96]), (0.2, [-8, 0, 0]), (0.05, [160, 8, 8])]
     {
-        let [leaf, halves, quarters] = check_leaf(&mesh, Lattice { voxel }, Ijk(origin), &shares(12));
-        assert!(leaf > 0 && halves <= 8 * leaf && quarters <= 8 * halves, "{leaf} {halves} {quarters}");
+        let [leaf, octants, quarters] = check_leaf(&mesh, Lattice { voxel }, Ijk(origin), &shares(12));
+        assert!(leaf > 0 && octants <= 8 * leaf && quarters <= 8 * octants, "{leaf} {octants} {quarters}");
     }
 }
 
 #[test]
 fn lists_get_shorter() {
     let mesh = shapes::carved_cube(48);
-    let [leaf, halves, quarters] = check_leaf(&mesh, Lattice { voxel: 0.01 }, Ijk([48, 16, -8]), &shares(2));
-    assert!(halves < 8 * leaf / 2 && quarters < 8 * halves / 2, "{leaf} {halves} {quarters}");
+    let [leaf, octants, quarters] = check_leaf(&mesh, Lattice { voxel: 0.01 }, Ijk([48, 16, -8]), &shares(2));
+    assert!(octants < 8 * leaf / 2 && quarters < 8 * octants / 2, "{leaf} {octants} {quarters}");
     assert!(leaf < mesh.triangles.len() / 4, "{leaf} of {}", mesh.triangles.len());
 }
 

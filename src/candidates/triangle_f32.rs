@@ -1,4 +1,4 @@
-//! A triangle in f32, to bound distances of eight points at a time.
+//! A triangle in f32, for bounds of the distances of eight points at a time.
 
 use crate::geom::simd::{F32s, Vec3F32s};
 use crate::geom::triangle::Triangle;
@@ -8,32 +8,34 @@ use pulp::Simd;
 /// Eight points as structure of arrays.
 pub type EightPoints = [[f32; 8]; 3];
 
-/// Rounding of a distance from a [`TriangleF32`], in units of the largest coordinate: 64 units in the last place of
-/// f32. The computation takes some twenty roundings of half a unit each. Too large only keeps more triangles; too
-/// small could lose the closest one.
+/// Rounding error of a distance from a [`TriangleF32`], relative to the largest coordinate: 64
+/// units in the last place of f32. The computation takes some twenty roundings of half a unit each.
+/// A larger value only keeps more triangles; a smaller one could lose the closest triangle.
 pub(super) const ROUNDING: f32 = 64.0 / 16_777_216.0;
 
-/// A triangle relative to a nearby centre, in voxels: a frame of unit vectors for each edge, in which distances need no
-/// closest points.
+/// A triangle relative to a nearby centre, in voxels.
+///
+/// Each edge has a frame of unit vectors, in which distances need no closest points.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TriangleF32 {
-    sides: [EdgeF32; 3],
+    edges: [EdgeF32; 3],
     /// Unit normal.
     normal: [f32; 3],
-    /// The centre's height over the plane.
+    /// Height of the centre over the triangle's plane, in voxels.
     height: f32,
 }
 
-/// An edge of a triangle.
+/// An edge of a triangle and its frame. Lengths are in voxels.
 #[derive(Clone, Copy, Debug)]
 struct EdgeF32 {
+    /// Unit vector along the edge.
     along: [f32; 3],
-    /// How far along the centre is, from the edge's first corner.
-    position: f32,
+    /// Coordinate of the centre along the edge, from the edge's first vertex.
+    along_of_centre: f32,
     length: f32,
-    /// In the triangle's plane, perpendicular to the edge.
+    /// Unit vector in the triangle's plane, perpendicular to the edge, away from the triangle.
     outward: [f32; 3],
-    /// How far outward the centre is, from the edge.
+    /// Coordinate of the centre along `outward`, from the edge.
     outside: f32,
 }
 
@@ -41,7 +43,7 @@ impl EdgeF32 {
     fn new(start: Vec3, along: Vec3, length: f32, outward: Vec3) -> EdgeF32 {
         EdgeF32 {
             along: along.to_array(),
-            position: -start.dot(along),
+            along_of_centre: -start.dot(along),
             length,
             outward: outward.to_array(),
             outside: -start.dot(outward),
@@ -50,39 +52,42 @@ impl EdgeF32 {
 }
 
 impl TriangleF32 {
-    /// The triangle seen from `centre`, `scale` voxels to a model unit, and the largest coordinate of its corners.
+    /// Returns the triangle seen from `centre`, and the largest coordinate of its corners in
+    /// voxels. `scale` is the number of voxels in a model unit.
     pub fn new(triangle: &Triangle, centre: DVec3, scale: f64) -> (TriangleF32, f32) {
         let exact = triangle.corners.map(|c| (c - centre) * scale);
         let corners = exact.map(|c| c.as_vec3());
         let size = corners.iter().fold(0.0, |size: f32, c| size.max(c.abs().max_element()));
         // Differences of rounded corners would not have the direction of a short edge.
-        let edges = [exact[1] - exact[0], exact[2] - exact[1], exact[0] - exact[2]].map(|e| e.as_vec3());
-        let squared = edges.map(|edge| edge.length_squared());
+        let vectors = [exact[1] - exact[0], exact[2] - exact[1], exact[0] - exact[2]].map(|e| e.as_vec3());
+        let squared = vectors.map(|edge| edge.length_squared());
         let normal = triangle.normal.as_vec3();
         if normal == Vec3::ZERO || squared.iter().any(|&x| x < f32::MIN_POSITIVE) {
-            return (TriangleF32::needle(corners, edges, squared), size);
+            return (TriangleF32::needle(corners, vectors, squared), size);
         }
-        let sides = std::array::from_fn(|k| {
+        let edges = std::array::from_fn(|k| {
             let length = squared[k].sqrt();
-            let along = edges[k] * (1.0 / length);
+            let along = vectors[k] * (1.0 / length);
             EdgeF32::new(corners[k], along, length, along.cross(normal))
         });
-        (TriangleF32 { sides, normal: normal.to_array(), height: -corners[0].dot(normal) }, size)
+        (TriangleF32 { edges, normal: normal.to_array(), height: -corners[0].dot(normal) }, size)
     }
 
-    /// A triangle without an interior: its longest edge, beyond which every point is, on one side or the other.
-    fn needle(corners: [Vec3; 3], edges: [Vec3; 3], squared: [f32; 3]) -> TriangleF32 {
+    /// Returns a triangle without an interior: its longest edge, with outward vectors to both
+    /// sides. Every point is beyond the edge on one side or the other.
+    fn needle(corners: [Vec3; 3], vectors: [Vec3; 3], squared: [f32; 3]) -> TriangleF32 {
         let longest = (0..3).fold(0, |longest, k| if squared[k] > squared[longest] { k } else { longest });
         let (start, length) = (corners[longest], squared[longest].sqrt());
-        let along = edges[longest].try_normalize().unwrap_or(Vec3::X);
+        let along = vectors[longest].try_normalize().unwrap_or(Vec3::X);
         let (normal, outward) = along.any_orthonormal_pair();
-        let side = |outward| EdgeF32::new(start, along, length, outward);
-        let sides = [side(outward), side(-outward), side(outward)];
-        TriangleF32 { sides, normal: normal.to_array(), height: -start.dot(normal) }
+        let edge = |outward| EdgeF32::new(start, along, length, outward);
+        let edges = [edge(outward), edge(-outward), edge(outward)];
+        TriangleF32 { edges, normal: normal.to_array(), height: -start.dot(normal) }
     }
 
-    /// Between which heights over the triangle's plane the box around `centre` with half-sides `half` is, but for rounding. Zero
-    /// is among them for a needle, if it is near enough.
+    /// Returns the least and the largest height over the triangle's plane of a cube of width 2
+    /// `half` around `centre`, in voxels, but for rounding. For a needle the range holds zero if
+    /// the needle is near enough.
     pub fn heights(&self, centre: [f32; 3], half: f32) -> [f32; 2] {
         let sum = |f: &dyn Fn(usize) -> f32| f(0) + f(1) + f(2);
         let middle = self.height + sum(&|i| self.normal[i] * centre[i]);
@@ -90,8 +95,9 @@ impl TriangleF32 {
         [middle - radius, middle + radius]
     }
 
-    /// The distances of the points in `p`, one over them, and the unit vectors to the points from their closest points. All
-    /// regions are computed and the right one is selected, so that the lanes run side by side.
+    /// Returns the distances of the points `p`, their inverses, and the unit vectors to the points
+    /// from their closest points. All regions are computed and the right one is selected, so that
+    /// all lanes take the same instructions.
     #[inline(always)]
     pub fn distances<S: Simd>(&self, simd: S, p: Vec3F32s<S>) -> (F32s<S>, F32s<S>, Vec3F32s<S>) {
         let (zero, one) = (F32s::splat(simd, 0.0), F32s::splat(simd, 1.0));
@@ -99,12 +105,12 @@ impl TriangleF32 {
         let mut squared = F32s::splat(simd, f32::INFINITY);
         let mut outermost = F32s::splat(simd, f32::NEG_INFINITY);
         let mut beside = Vec3F32s::splat(simd, [0.0; 3]);
-        for side in &self.sides {
-            let (along, outward) = (Vec3F32s::splat(simd, side.along), Vec3F32s::splat(simd, side.outward));
-            let position = along.dot_plus(p, F32s::splat(simd, side.position));
-            let outside = outward.dot_plus(p, F32s::splat(simd, side.outside));
+        for edge in &self.edges {
+            let (along, outward) = (Vec3F32s::splat(simd, edge.along), Vec3F32s::splat(simd, edge.outward));
+            let position = along.dot_plus(p, F32s::splat(simd, edge.along_of_centre));
+            let outside = outward.dot_plus(p, F32s::splat(simd, edge.outside));
             outermost = outermost.max(outside);
-            let beyond = position - position.max(zero).min(F32s::splat(simd, side.length));
+            let beyond = position - position.max(zero).min(F32s::splat(simd, edge.length));
             let square = beyond.times_plus(beyond, outside * outside);
             let nearer = zero.at_most(outside) & square.less(squared);
             squared = nearer.select(square, squared);
