@@ -1,7 +1,7 @@
 """The pages that bench_report.py writes from what it measured."""
 
-import base64
 import re
+import textwrap
 
 # The cases with pictures: what of the page of `exocarp compare --report` is kept, and what it shows.
 PICTURES = {
@@ -18,6 +18,8 @@ TITLES = {
     "meshlib-sharp": "MeshLib sharpening",
 }
 CAPTION = "Black is the true offset curve, grey the true solid, wide and coloured the method's outline."
+# Around the figures of README.md.
+FIRST_MARK, LAST_MARK = "<!-- figures: written by make bench-report -->", "<!-- end of figures -->"
 MEGABYTE = 1e6
 # Pixels between the panels of a picture, and below each for its name.
 GAP, FOOT = 12, 26
@@ -335,6 +337,34 @@ def seen(path, width, height):
         if max(a, c) >= 0 and min(a, c) <= width and max(b, d) >= 0 and min(b, d) <= height:
             inside.append("M{} {}L{} {}".format(*line))
     return "".join(inside)
+
+
+def figures(data):
+    """The paragraph of README.md: the largest case beside its peers."""
+    sound = lambda case: all(method_row(r) for r in case["result"]["results"])
+    cases = [case for case in data["peers"] if sound(case) and not case["distance"].startswith("-")]
+    if not cases:
+        return ""
+    case = max(cases, key=lambda c: method_row(c["result"]["results"][0])["triangles"])
+    rows = {r["method"]: method_row(r) for r in case["result"]["results"]}
+    own = rows["exocarp"]
+    text = f"{case['model']} ({count(case['result']['input_triangles'])} triangles) grown by {case['distance']} "
+    text += f"at resolution {case['resolution']} on {data['machine']['cores']} cores: {seconds(own['engine'])} s, "
+    text += f"{megabytes(own['memory'])} MB, {count(own['triangles'])} triangles, a mean error of {error(own['mean'])} "
+    text += f"voxels, {own['pairs'] or 'no'} intersecting pairs."
+    names = [m for m in ("openvdb-wide", "meshlib-sharp") if m in rows]
+    others = [f"{TITLES[m]} took {seconds(rows[m]['engine'])} s" for m in names]
+    text += f" In turn with it {', '.join(others)}." if others else ""
+    text += f" ({data['date']}, {data['machine']['cpu']}.) [docs/benchmarks.md](docs/benchmarks.md) has all figures."
+    return textwrap.fill(text, 100, break_long_words=False, break_on_hyphens=False)
+
+
+def write_figures(data, path):
+    """Replaces the figures of README.md, which stand between two marks."""
+    text = path.read_text()
+    before, rest = text.split(FIRST_MARK, 1)
+    _, after = rest.split(LAST_MARK, 1)
+    path.write_text(f"{before}{FIRST_MARK}\n{figures(data)}\n{LAST_MARK}{after}")
 
 
 def write(data, docs):

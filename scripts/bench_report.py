@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures the engine and its peers and writes docs/benchmarks.md and docs/compare/README.md.
+"""Measures the engine and its peers; writes docs/benchmarks.md, docs/compare and the figures of README.md.
 
     make bench-report                        all models and peers, about an hour; QUICK=1: ten minutes
     python3 scripts/bench_report.py --help   the options
@@ -270,6 +270,7 @@ def main():
     parser.add_argument("--python", default="python3", help="an interpreter that can import meshlib")
     parser.add_argument("--work", default="out/bench", help="where results are kept, by commit")
     parser.add_argument("--docs", default="docs", help="where the pages go")
+    parser.add_argument("--readme", default="README.md", help="where the figures go; nowhere if empty")
     parser.add_argument("--quick", action="store_true", help="fewer cases and peers: within ten minutes")
     parser.add_argument("--tiny", action="store_true", help="a test of this script; the figures mean nothing")
     parser.add_argument("--again", action="store_true", help="measure anew what is kept")
@@ -285,6 +286,8 @@ def main():
     for step in (peers, growth, threads, streaming, noisy, thickening):
         data[step.__name__] = step(bench)
     bench_pages.write(data, Path(options.docs))
+    if not options.tiny and options.readme:
+        bench_pages.write_figures(data, Path(options.readme))
 
 
 if __name__ == "__main__":

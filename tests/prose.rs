@@ -10,7 +10,7 @@ const COLUMNS: usize = 100;
 const WIDE_COMMENTS: usize = 1100;
 
 /// Doc comments that begin with a pronoun, which may not grow in number.
-const PRONOUNS: usize = 120;
+const PRONOUNS: usize = 60;
 
 /// First words that refer to another item, which a tooltip does not show.
 const ANAPHORS: [&str; 13] = [
