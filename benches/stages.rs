@@ -4,8 +4,10 @@ use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main};
 use exocarp::band::{self, LeafBatch};
 use exocarp::distance::SignedDistance;
+use exocarp::internals::band_settings;
 use exocarp::mesh::{Topology, TriMesh, shapes};
-use exocarp::offset::{EngineTimes, Length, OffsetSettings, VoxelSize, offset, offset_band};
+use exocarp::offset::{BandOptions, EngineTimes, OffsetSettings, offset, offset_band};
+use exocarp::quantity::{Length, VoxelSize};
 use exocarp::run::{Cancelled, RunSettings};
 use exocarp::ssvh;
 use exocarp::vdb::{ClosestGrid, SurfaceGrid};
@@ -19,7 +21,7 @@ fn stages(c: &mut Criterion) {
     let mesh = shapes::anchor(shapes::DEFAULT_DETAIL);
     let run = RunSettings::with_threads(0).expect("threads");
     let settings = OffsetSettings {
-        distance: Length::OfDiagonal(0.02),
+        distance: Length::DiagonalFraction(0.02),
         voxel: VoxelSize::Resolution(RESOLUTION),
         ..OffsetSettings::default()
     };
@@ -33,7 +35,7 @@ fn stages(c: &mut Criterion) {
     group.bench_function("whole", |b| {
         b.iter(|| black_box(offset(&mesh, &settings, &run).expect("an offset of the bench's model")))
     });
-    let stored = OffsetSettings { half_width: 3.0, keep_band: true, ..settings.clone() };
+    let stored = OffsetSettings { band: Some(BandOptions::default()), ..settings.clone() };
     group.bench_function("stored band alone", |b| {
         b.iter(|| black_box(offset_band(&mesh, &stored, &run).expect("a band of the bench's model")))
     });
@@ -65,7 +67,8 @@ fn bridge(
     run: &RunSettings,
 ) {
     let topology = Topology::new(mesh);
-    let resolved = OffsetSettings { half_width: 3.0, ..settings.clone() }.resolve(mesh).expect("settings");
+    let stored = OffsetSettings { band: Some(BandOptions::default()), ..settings.clone() };
+    let resolved = band_settings(&stored, mesh).expect("settings");
     let distance = run.install(|| SignedDistance::new(mesh, &topology));
     let mut batches: Vec<LeafBatch> = Vec::new();
     band::build(&distance, &resolved, run, |batch| {

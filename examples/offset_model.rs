@@ -2,7 +2,8 @@
 //! --example offset_model`.
 
 use exocarp::mesh::{measure, shapes};
-use exocarp::offset::{Length, OffsetSettings, VoxelSize, offset};
+use exocarp::offset::{OffsetSettings, offset};
+use exocarp::quantity::{Length, VoxelSize};
 use exocarp::run::RunSettings;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -18,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         };
         let result = offset(&model, &settings, &run)?;
         let path = format!("out/example-{name}.ply");
-        result.mesh.save(&path)?;
+        result.save(&path)?;
         println!(
             "{path}: {} triangles, volume {:.4}, {:.2} s",
             result.mesh.triangles.len(),

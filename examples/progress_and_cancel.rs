@@ -2,7 +2,8 @@
 //! progress_and_cancel`.
 
 use exocarp::mesh::shapes;
-use exocarp::offset::{OffsetError, OffsetSettings, VoxelSize, offset};
+use exocarp::offset::{OffsetError, OffsetSettings, offset};
+use exocarp::quantity::VoxelSize;
 use exocarp::run::{CancelToken, Phase, Progress, RunSettings};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -25,7 +26,7 @@ impl Progress for Printer {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = shapes::flower(64);
     let cancel = CancelToken::default();
-    let run = RunSettings::with_threads(0)?.cancelled_by(cancel.clone()).reporting_to(Arc::new(Printer));
+    let run = RunSettings::with_threads(0)?.with_cancel(cancel.clone()).with_progress(Arc::new(Printer));
 
     // A button, a signal handler, or here: another thread with a clock.
     std::thread::spawn(move || {

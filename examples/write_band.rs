@@ -2,7 +2,8 @@
 //! --example write_band`.
 
 use exocarp::mesh::shapes;
-use exocarp::offset::{Length, OffsetSettings, VoxelSize, offset_band};
+use exocarp::offset::{OffsetSettings, offset_band};
+use exocarp::quantity::{Length, VoxelSize};
 use exocarp::run::RunSettings;
 use exocarp::vdb::{self, VdbOptions};
 use std::path::Path;
@@ -12,14 +13,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let settings = OffsetSettings {
         distance: Length::Units(0.05),
         voxel: VoxelSize::Units(0.02),
-        // Contouring needs 1 voxel on each side; other programs expect 3.
-        half_width: 3.0,
-        keep_band: true,
         ..OffsetSettings::default()
     };
     // The band alone: `offset` makes the mesh as well.
     let result = offset_band(&model, &settings, &RunSettings::with_threads(0)?)?;
-    let band = result.band.expect("kept, as the settings say");
+    let band = &result.band;
 
     std::fs::create_dir_all("out")?;
     let path = Path::new("out/example-band.vdb");

@@ -3,6 +3,7 @@
 pub mod error;
 pub mod geom;
 pub mod run;
+pub mod quantity;
 
 pub mod lattice;
 pub mod mesh;
@@ -21,6 +22,15 @@ pub mod verify;
 pub mod thicken;
 pub mod compare;
 pub mod paper;
+
+pub use contour::ContourStatistics;
+pub use error::Error;
+pub use offset::{BandOptions, OffsetSettings, job};
+pub use quantity::{Length, ParseQuantityError, Precision, TileIndex, Tolerance, VoxelSize};
+pub use subvoxel::MissedFeatures;
+
+#[doc(hidden)]
+pub mod internals;
 
 /// The README's example runs as a test.
 #[cfg(doctest)]

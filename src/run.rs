@@ -126,13 +126,13 @@ impl RunSettings {
     }
 
     /// The same run, stopped by `cancel`.
-    pub fn cancelled_by(mut self, cancel: CancelToken) -> Self {
+    pub fn with_cancel(mut self, cancel: CancelToken) -> Self {
         self.cancel = cancel;
         self
     }
 
     /// The same run, reporting to `progress`.
-    pub fn reporting_to(mut self, progress: Arc<dyn Progress>) -> Self {
+    pub fn with_progress(mut self, progress: Arc<dyn Progress>) -> Self {
         self.progress = Some(progress);
         self
     }

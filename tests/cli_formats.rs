@@ -3,8 +3,9 @@
 mod common;
 
 use common::exocarp;
-use exocarp::io::{Coordinates, SaveOptions, load, save};
+use exocarp::io::{SaveOptions, load, save};
 use exocarp::mesh::{TriMesh, clean, shapes};
+use exocarp::quantity::Precision;
 use exocarp::run::RunSettings;
 use exocarp::verify::soundness;
 use std::path::{Path, PathBuf};
@@ -51,7 +52,7 @@ fn every_command_writes_the_same_coordinates_into_every_format() {
     let mut wave = (shapes::by_name("wave").unwrap().make)(4);
     wave.vertices.iter_mut().flatten().for_each(|x| *x /= 3.0);
     for (mesh, name) in [(pillow(), "pillow.ply"), (wave, "wave.ply")] {
-        save(&mesh, &at(name), &SaveOptions { coordinates: Coordinates::F64 }).unwrap();
+        save(&mesh, &at(name), &SaveOptions { precision: Precision::F64 }).unwrap();
     }
     let (pillow, wave) = (text(&at("pillow.ply")), text(&at("wave.ply")));
     let commands: [(&str, Vec<&str>); 4] = [

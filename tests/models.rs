@@ -3,8 +3,9 @@
 
 use std::path::PathBuf;
 
-use exocarp::io::{Coordinates, SaveOptions, load, save};
+use exocarp::io::{SaveOptions, load, save};
 use exocarp::mesh::clean;
+use exocarp::quantity::Precision;
 
 /// The models with their numbers of triangles in the file.
 const MODELS: [(&str, usize); 17] = [
@@ -52,7 +53,7 @@ fn each_model_loads_and_comes_back_from_every_format() {
         let extensions: &[&str] = if triangles > 100_000 { &["ply"] } else { &["ply", "obj", "off"] };
         for extension in extensions {
             let copy = directory.path().join(name).with_extension(extension);
-            save(&mesh, &copy, &SaveOptions { coordinates: Coordinates::F64 }).unwrap();
+            save(&mesh, &copy, &SaveOptions { precision: Precision::F64 }).unwrap();
             let again = load(&copy).unwrap();
             assert_eq!(again.triangles, mesh.triangles, "{}", copy.display());
             let single = |v: &[f64; 3]| v.map(|x| x as f32);

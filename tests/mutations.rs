@@ -9,8 +9,9 @@ mod common;
 
 use common::exocarp;
 use common::random::Random;
-use exocarp::io::{self, Coordinates, SaveOptions};
+use exocarp::io::{self, SaveOptions};
 use exocarp::mesh::{Topology, TriMesh, clean, shapes};
+use exocarp::quantity::Precision;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::fs;
 use std::path::Path;
@@ -131,17 +132,17 @@ fn files(directory: &Path) -> Vec<(&'static str, Vec<u8>)> {
     let mesh = shapes::carved_cube(2);
     let saved = |name: &str, coordinates| {
         let path = directory.join(name);
-        io::save(&mesh, &path, &SaveOptions { coordinates }).unwrap();
+        io::save(&mesh, &path, &SaveOptions { precision: coordinates }).unwrap();
         fs::read(path).unwrap()
     };
     vec![
-        ("obj", saved("a.obj", Coordinates::F64)),
+        ("obj", saved("a.obj", Precision::F64)),
         ("obj", quads().into_bytes()),
-        ("off", saved("a.off", Coordinates::F64)),
-        ("stl", saved("a.stl", Coordinates::F32)),
+        ("off", saved("a.off", Precision::F64)),
+        ("stl", saved("a.stl", Precision::F32)),
         ("stl", stl_text(&mesh).into_bytes()),
-        ("ply", saved("a.ply", Coordinates::F32)),
-        ("ply", saved("b.ply", Coordinates::F64)),
+        ("ply", saved("a.ply", Precision::F32)),
+        ("ply", saved("b.ply", Precision::F64)),
         ("ply", ply_big_endian(&mesh)),
         ("ply", ply_text(&mesh).into_bytes()),
     ]

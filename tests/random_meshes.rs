@@ -5,7 +5,8 @@ mod common;
 
 use common::random::Random;
 use common::small_meshes::{KINDS, small_mesh};
-use exocarp::io::{Coordinates, SaveOptions, load, save};
+use exocarp::io::{SaveOptions, load, save};
+use exocarp::quantity::Precision;
 use exocarp::run::RunSettings;
 use exocarp::verify::soundness;
 use std::path::Path;
@@ -56,7 +57,7 @@ fn offset(n: u64, directory: &Path) -> Result<&'static str, String> {
     let mesh = small_mesh(kind, &mut random);
     let [input, output, stats] =
         ["in.off", "out.ply", "out.json"].map(|name| directory.join(format!("{n}-{name}")));
-    save(&mesh, &input, &SaveOptions { coordinates: Coordinates::F64 }).map_err(|e| e.to_string())?;
+    save(&mesh, &input, &SaveOptions { precision: Precision::F64 }).map_err(|e| e.to_string())?;
     let options = options(&mut random);
     let line = format!("{} {n}: offset {}", KINDS[kind], options.join(" "));
     let limits = format!("ulimit -t {CPU_SECONDS} -v {ADDRESS_SPACE_KIB}; exec \"$0\" \"$@\"");

@@ -1,9 +1,10 @@
 //! The promise holds on the coordinates in the file: meshes are written, read again and judged, for
 //! models of all sizes and far from the origin.
 
-use exocarp::io::{Coordinates, SaveOptions, load, save};
+use exocarp::io::{SaveOptions, load, save};
 use exocarp::mesh::{TriMesh, clean, shapes};
-use exocarp::offset::{Length, OffsetError, OffsetSettings, Precision, VoxelSize, offset};
+use exocarp::offset::{OffsetError, OffsetSettings, offset};
+use exocarp::quantity::{Length, Precision, VoxelSize};
 use exocarp::run::RunSettings;
 use exocarp::verify::soundness;
 use glam::{DQuat, DVec3};
@@ -36,7 +37,7 @@ fn placed(mesh: &TriMesh, scale: f64, shift: DVec3) -> TriMesh {
 
 fn settings(fraction: f64, precision: Precision) -> OffsetSettings {
     OffsetSettings {
-        distance: Length::OfDiagonal(fraction),
+        distance: Length::DiagonalFraction(fraction),
         voxel: VoxelSize::Resolution(40),
         precision,
         ..OffsetSettings::default()
@@ -44,10 +45,10 @@ fn settings(fraction: f64, precision: Precision) -> OffsetSettings {
 }
 
 /// The mesh as it is after a trip through a file.
-fn reread(mesh: &TriMesh, extension: &str, coordinates: Coordinates) -> TriMesh {
+fn reread(mesh: &TriMesh, extension: &str, coordinates: Precision) -> TriMesh {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("mesh").with_extension(extension);
-    save(mesh, &path, &SaveOptions { coordinates }).unwrap();
+    save(mesh, &path, &SaveOptions { precision: coordinates }).unwrap();
     clean(load(&path).unwrap()).0
 }
 
@@ -68,7 +69,7 @@ fn files_are_sound_at_every_size_of_the_model() {
                 let what = format!("{name} x {scale} {fraction}");
                 let result = offset(&model, &settings(fraction, Precision::F32), &run()).expect(&what);
                 for extension in ["ply", "stl", "obj", "off"] {
-                    let again = reread(&result.mesh, extension, Coordinates::F32);
+                    let again = reread(&result.mesh, extension, Precision::F32);
                     assert_eq!(again.triangles.len(), result.mesh.triangles.len(), "{what}");
                     assert_sound(&again, result.mesh.vertices.len(), &format!("{what} {extension}"));
                 }
@@ -90,7 +91,7 @@ fn far_from_the_origin_coordinates_of_32_bits_are_refused_and_those_of_64_bits_a
             }
             let result = offset(&model, &settings(fraction, Precision::F64), &run()).expect(&what);
             for extension in ["ply", "obj", "off"] {
-                let again = reread(&result.mesh, extension, Coordinates::F64);
+                let again = reread(&result.mesh, extension, Precision::F64);
                 assert_eq!(again, result.mesh, "{what} {extension}");
             }
             assert_sound(&result.mesh, result.mesh.vertices.len(), &what);
@@ -108,7 +109,7 @@ fn between_the_two_whatever_is_written_is_sound() {
         match offset(&model, &settings(0.02, Precision::F32), &run()) {
             Ok(result) => {
                 assert_eq!(refused, 0, "a model further out is refused first");
-                let again = reread(&result.mesh, "stl", Coordinates::F32);
+                let again = reread(&result.mesh, "stl", Precision::F32);
                 assert_sound(&again, result.mesh.vertices.len(), &format!("{name} {step}"));
                 sound += 1;
             }

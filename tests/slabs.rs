@@ -1,12 +1,12 @@
 //! Slabs against the whole: the same mesh, the same band, the same counts.
 
-use exocarp::contour::SlabContour;
 use exocarp::lattice::LEAF_SIZE;
-use exocarp::mesh::{TriMesh, shapes};
+use exocarp::mesh::{MeshChunk, TriMesh, shapes};
 use exocarp::offset::{
-    Cut, Length, OffsetError, OffsetResult, OffsetSettings, PieceSink, Precision, SignMode, SinkError,
-    Tolerance, VoxelSize, offset, offset_in_slabs,
+    BandOptions, MeshSink, OffsetError, OffsetResult, OffsetSettings, OpenInput, Partition, SinkError,
+    StreamResult, offset, offset_streamed,
 };
+use exocarp::quantity::{Length, Precision, TileIndex, Tolerance, VoxelSize};
 use exocarp::run::RunSettings;
 use exocarp::vdb::Band;
 
@@ -18,17 +18,18 @@ fn run() -> RunSettings {
 #[derive(Default)]
 struct Gathered(TriMesh);
 
-impl PieceSink for Gathered {
+impl MeshSink for Gathered {
     fn restart(&mut self) -> Result<(), SinkError> {
         self.0 = TriMesh::default();
         Ok(())
     }
 
-    fn piece(&mut self, piece: &SlabContour) -> Result<(), SinkError> {
-        let first = self.0.vertices.len() as i64 - piece.vertices.start as i64;
-        self.0.vertices.extend_from_slice(&piece.mesh.vertices[piece.vertices.clone()]);
-        let number = |v: u32| u32::try_from(first + i64::from(v)).unwrap();
-        self.0.triangles.extend(piece.mesh.triangles[piece.triangles.clone()].iter().map(|t| t.map(number)));
+    fn chunk(&mut self, chunk: &MeshChunk) -> Result<(), SinkError> {
+        // Of a tile, only the numbers beside one another count.
+        let first = self.0.vertices.len() as i64 - chunk.first_vertex() as i64;
+        self.0.vertices.extend_from_slice(chunk.vertices());
+        let number = |v: u64| u32::try_from(first + v as i64).unwrap();
+        self.0.triangles.extend(chunk.triangles().map(|t| t.map(number)));
         Ok(())
     }
 }
@@ -72,14 +73,14 @@ fn content(band: &Band) -> (Vec<exocarp::lattice::Ijk>, Vec<u32>, Vec<[u64; 8]>,
 
 /// A little more than the thinnest slabs take: those of one layer would be many.
 fn little_memory(mesh: &TriMesh, settings: &OffsetSettings) -> u64 {
-    match offset_in_slabs(mesh, settings, Cut::Memory(1), &mut Gathered::default(), &run()) {
+    match offset_streamed(mesh, settings, Partition::Memory(1), &mut Gathered::default(), &run()) {
         Err(OffsetError::Memory(error)) => error.needed + error.needed / 20,
         // Nothing is cut where no surface is.
         _ => 1,
     }
 }
 
-fn assert_same(slabs: &OffsetResult, whole: &OffsetResult, what: &str) {
+fn assert_same(slabs: &StreamResult, whole: &OffsetResult, what: &str) {
     let (s, w) = (&slabs.statistics, &whole.statistics);
     assert_eq!((s.filter, s.edges, s.contour), (w.filter, w.edges, w.contour), "{what}");
     assert_eq!(s.missed, w.missed, "{what}");
@@ -99,16 +100,15 @@ fn slabs_one_after_the_other_give_the_whole() {
             for tolerance in [None, (name == "carved_cube").then_some(Tolerance::Voxels(0.02))] {
                 let settings = OffsetSettings {
                     tolerance,
-                    keep_band: true,
-                    half_width: 3.0,
+                    band: Some(BandOptions::default()),
                     // So many layers that a halo is not all of them.
                     ..settings(distance, if tolerance.is_some() { 0.02 } else { 0.035 })
                 };
                 let what = format!("{name} {distance} {tolerance:?}");
                 let whole = offset(&mesh, &settings, &run()).unwrap();
                 let mut pieces = Gathered::default();
-                let cut = Cut::Memory(little_memory(&mesh, &settings));
-                let slabs = offset_in_slabs(&mesh, &settings, cut, &mut pieces, &run()).unwrap();
+                let cut = Partition::Memory(little_memory(&mesh, &settings));
+                let slabs = offset_streamed(&mesh, &settings, cut, &mut pieces, &run()).unwrap();
                 assert!(slabs.statistics.slabs > 1, "{what}: {}", slabs.statistics.slabs);
                 assert!(pieces.0 == whole.mesh, "{what}: the meshes differ");
                 assert_same(&slabs, &whole, &what);
@@ -120,13 +120,13 @@ fn slabs_one_after_the_other_give_the_whole() {
 /// Gathers the pieces of one tile after those of another.
 struct Continued<'a>(&'a mut Gathered);
 
-impl PieceSink for Continued<'_> {
+impl MeshSink for Continued<'_> {
     fn restart(&mut self) -> Result<(), SinkError> {
         Ok(())
     }
 
-    fn piece(&mut self, piece: &SlabContour) -> Result<(), SinkError> {
-        self.0.piece(piece)
+    fn chunk(&mut self, chunk: &MeshChunk) -> Result<(), SinkError> {
+        self.0.chunk(chunk)
     }
 }
 
@@ -134,8 +134,8 @@ impl PieceSink for Continued<'_> {
 fn in_tiles(mesh: &TriMesh, settings: &OffsetSettings, of: u32) -> TriMesh {
     let mut all = Gathered::default();
     for number in 1..=of {
-        let cut = Cut::Tile { number, of };
-        offset_in_slabs(mesh, settings, cut, &mut Continued(&mut all), &run()).unwrap();
+        let cut = Partition::Tile(TileIndex::new(number, of).unwrap());
+        offset_streamed(mesh, settings, cut, &mut Continued(&mut all), &run()).unwrap();
     }
     all.0
 }
@@ -169,9 +169,8 @@ fn inside_out_models_in_slabs_and_tiles_give_the_whole() {
         // the lattice.
         for (distance, voxel) in [(0.0, 0.2), (-0.3, 0.11), (2.5, 0.4), (9.0, 0.9)] {
             let settings = OffsetSettings {
-                sign: SignMode::Pseudonormal,
-                keep_band: true,
-                half_width: 3.0,
+                open_input: OpenInput::Accept,
+                band: Some(BandOptions::default()),
                 ..settings(distance, voxel)
             };
             let what = format!("{name} {distance}");
@@ -183,8 +182,8 @@ fn inside_out_models_in_slabs_and_tiles_give_the_whole() {
                 assert!(tiles == whole.mesh, "{what}: the meshes of {of} tiles differ");
             }
             let mut pieces = Gathered::default();
-            let memory = Cut::Memory(little_memory(&mesh, &settings));
-            let slabs = offset_in_slabs(&mesh, &settings, memory, &mut pieces, &run()).unwrap();
+            let memory = Partition::Memory(little_memory(&mesh, &settings));
+            let slabs = offset_streamed(&mesh, &settings, memory, &mut pieces, &run()).unwrap();
             assert!(pieces.0 == whole.mesh, "{what}: the mesh in slabs differs");
             assert_same(&slabs, &whole, &what);
         }

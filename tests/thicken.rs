@@ -5,7 +5,7 @@ mod common;
 use common::thickened::check;
 use exocarp::mesh::measure::{area, signed_volume};
 use exocarp::mesh::{Topology, TriMesh, shapes};
-use exocarp::offset::{Length, VoxelSize};
+use exocarp::quantity::{Length, VoxelSize};
 use exocarp::run::RunSettings;
 use exocarp::thicken::{
     PatchError, SectionNormals, Side, ThickenError, ThickenSettings, ThickenSettingsError, thicken,

@@ -8,7 +8,7 @@ mod common;
 use common::random::Random;
 use common::thickened::{audit, check};
 use exocarp::mesh::TriMesh;
-use exocarp::offset::{Length, Precision, VoxelSize};
+use exocarp::quantity::{Length, Precision, VoxelSize};
 use exocarp::run::RunSettings;
 use exocarp::thicken::{Side, ThickenError, ThickenSettings, thicken};
 
@@ -62,7 +62,7 @@ fn settings(random: &mut Random) -> ThickenSettings {
     let resolution = random.of(&[4, 5, 6, 8, 12, 12, 16, 24, 32]);
     let resolution = random.of(&[resolution, resolution.max((2.0 / thickness) as u32 + 5)]);
     ThickenSettings {
-        thickness: Length::OfDiagonal(thickness),
+        thickness: Length::DiagonalFraction(thickness),
         side: random.of(&[Side::Inner, Side::Outer]),
         voxel: (thickness > 0.05).then_some(VoxelSize::Resolution(resolution)),
         rounds: random.of(&[0, 10, 10]),
@@ -86,7 +86,8 @@ fn random_patches_of_any_thickness_are_sound_or_refused() {
                 eprintln!("seed {seed}: {settings:?}");
                 audit(&mesh, &settings, &result);
                 sound += 1;
-                far += u64::from(matches!(settings.thickness, Length::OfDiagonal(share) if share > 10.0));
+                far +=
+                    u64::from(matches!(settings.thickness, Length::DiagonalFraction(share) if share > 10.0));
             }
             Err(
                 ThickenError::Settings(_)
@@ -116,7 +117,7 @@ fn a_patch_that_is_small_beside_the_voxels_has_each_edge_twice() {
         for (side, resolution) in [(Side::Outer, 12), (Side::Inner, 12), (Side::Outer, 7), (Side::Inner, 32)]
         {
             let settings = ThickenSettings {
-                thickness: Length::OfDiagonal(diagonals),
+                thickness: Length::DiagonalFraction(diagonals),
                 voxel: Some(VoxelSize::Resolution(resolution)),
                 side,
                 ..ThickenSettings::default()

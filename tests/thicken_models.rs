@@ -6,7 +6,7 @@ mod common;
 use common::thickened::check;
 use exocarp::io::load;
 use exocarp::mesh::{TriMesh, clean};
-use exocarp::offset::{Length, VoxelSize};
+use exocarp::quantity::{Length, VoxelSize};
 use exocarp::thicken::{Side, ThickenSettings};
 use std::collections::BTreeSet;
 use std::path::PathBuf;

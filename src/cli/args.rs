@@ -1,10 +1,11 @@
 //! The arguments, their units and their help.
 
 use super::examples;
-use super::format::{bytes, length, resolution, threads, tile, tolerance, voxel};
+use super::format::{bytes, resolution, threads, voxel};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use exocarp::compare::Method;
-use exocarp::offset::{Length, SignMode, Tolerance};
+use exocarp::offset::OpenInput;
+use exocarp::quantity::{Length, TileIndex, Tolerance};
 use exocarp::thicken::{SectionNormals, Side, ThickenSettings};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -77,7 +78,7 @@ pub(super) struct OffsetArguments {
     pub input: PathBuf,
     /// Signed distance in model units, or in percent of the input's diagonal: positive grows,
     /// negative shrinks, 0 remeshes
-    #[arg(long, short, value_name = "D", value_parser = length, allow_hyphen_values = true)]
+    #[arg(long, short, value_name = "D", allow_hyphen_values = true)]
     pub distance: Length,
     /// Where to write the offset surface; may be left out with --vdb
     #[arg(long, short, value_name = "OUTPUT", required_unless_present = "vdb")]
@@ -93,7 +94,7 @@ pub(super) struct OffsetArguments {
     #[arg(long, value_enum, default_value_t = Sign::Closed)]
     pub sign: Sign,
     /// Refine the mesh until it is this near to the true offset surface: in model units, or in voxels as 0.05h
-    #[arg(long, value_name = "E", value_parser = tolerance, allow_negative_numbers = true)]
+    #[arg(long, value_name = "E", allow_negative_numbers = true)]
     pub tolerance: Option<Tolerance>,
     /// Halve the voxel size up to N times while parts, sheets or gaps thinner than a voxel are missing
     #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, default_value_t = 0, default_missing_value = "3")]
@@ -104,23 +105,14 @@ pub(super) struct OffsetArguments {
     #[arg(long, conflicts_with = "tile")]
     pub stream: bool,
     /// Make tile I of N only, for `exocarp merge` to join: several machines share one offset
-    #[arg(long, value_name = "I/N", value_parser = tile, conflicts_with = "resolve")]
-    pub tile: Option<TileNumber>,
+    #[arg(long, value_name = "I/N", conflicts_with = "resolve")]
+    pub tile: Option<TileIndex>,
     /// Write the closest triangle of each voxel into the .vdb file, too, as a second grid; many programs
     /// cannot read that
     #[arg(long, requires = "vdb")]
     pub closest: bool,
     #[command(flatten)]
     pub more: OutputArguments,
-}
-
-/// One of several tiles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct TileNumber {
-    /// From 1.
-    pub number: u32,
-    /// Number of tiles.
-    pub of: u32,
 }
 
 /// `exocarp merge`.
@@ -143,7 +135,7 @@ pub(super) struct ThickenArguments {
     #[arg(value_name = "PATCH")]
     pub input: PathBuf,
     /// Thickness of the solid in model units, or in percent of the patch's diagonal
-    #[arg(long, short, value_name = "T", value_parser = length, allow_hyphen_values = true)]
+    #[arg(long, short, value_name = "T", allow_hyphen_values = true)]
     #[arg(required_unless_present = "thickness_map")]
     pub thickness: Option<Length>,
     /// The thickness at each vertex of PATCH, in the order of the file, in model units: text, or a PLY file whose
@@ -260,7 +252,7 @@ pub(super) struct CompareArguments {
     pub input: PathBuf,
     /// Signed distance in model units, or in percent of the input's diagonal: positive grows, negative
     /// shrinks
-    #[arg(long, short, value_name = "D", value_parser = length, allow_hyphen_values = true)]
+    #[arg(long, short, value_name = "D", allow_hyphen_values = true)]
     pub distance: Length,
     /// Voxel size in model units
     #[arg(long, value_name = "H", value_parser = voxel, allow_negative_numbers = true)]
@@ -330,10 +322,11 @@ impl Sign {
         }
     }
 
-    pub fn mode(self) -> SignMode {
+    /// The setting.
+    pub fn open_input(self) -> OpenInput {
         match self {
-            Sign::Closed => SignMode::Closed,
-            Sign::Pseudonormal => SignMode::Pseudonormal,
+            Sign::Closed => OpenInput::Refuse,
+            Sign::Pseudonormal => OpenInput::Accept,
         }
     }
 }
@@ -409,7 +402,7 @@ pub(super) struct VerifyArguments {
     /// The mesh to judge
     pub output: PathBuf,
     /// Signed distance that OUTPUT is said to be at, in model units, or in percent of INPUT's diagonal
-    #[arg(long, short, value_name = "D", value_parser = length, allow_hyphen_values = true)]
+    #[arg(long, short, value_name = "D", allow_hyphen_values = true)]
     pub distance: Length,
     /// Write everything that was found as JSON
     #[arg(long, value_name = "FILE.json")]
@@ -419,7 +412,7 @@ pub(super) struct VerifyArguments {
     pub voxel: Option<f64>,
     /// The largest error allowed, in model units or in percent of INPUT's diagonal: of OUTPUT from the true
     /// offset surface, and the other way round
-    #[arg(long, value_name = "E", value_parser = length, allow_negative_numbers = true)]
+    #[arg(long, value_name = "E", allow_negative_numbers = true)]
     pub tolerance: Option<Length>,
     /// Samples, uniform over the area, up to 20 million
     #[arg(long, value_name = "N", default_value_t = exocarp::verify::DEFAULT_SAMPLES)]

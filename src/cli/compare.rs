@@ -9,7 +9,7 @@ use super::session::{Session, Verbosity, print};
 use exocarp::compare::{
     CompareSettings, Comparison, Event, Job, Lost, Method, Programs, compare, report, text, work,
 };
-use exocarp::offset::VoxelSize;
+use exocarp::quantity::VoxelSize;
 use std::path::PathBuf;
 use std::time::Duration;
 

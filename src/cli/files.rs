@@ -4,9 +4,9 @@ use super::args::{Codec, OutputArguments};
 use super::exit::{Exit, Failure, of_io};
 use super::session::Session;
 use super::statistics::Loading;
-use exocarp::io::{self, Coordinates, Format, SaveOptions, Tile};
+use exocarp::io::{self, Format, SaveOptions, Tile};
 use exocarp::mesh::{CleanReport, TriMesh, clean};
-use exocarp::offset::Precision;
+use exocarp::quantity::Precision;
 use exocarp::run::Phase;
 use exocarp::vdb::{self, Band, Compression, VdbError, VdbOptions, VdbPrecision};
 use serde::Serialize;
@@ -42,10 +42,6 @@ pub(super) fn check_mesh_output(output: &Path, f64: bool) -> Result<(), Failure>
         )));
     }
     Ok(())
-}
-
-pub(super) fn coordinates(f64: bool) -> Coordinates {
-    if f64 { Coordinates::F64 } else { Coordinates::F32 }
 }
 
 /// A mesh ready for work.
@@ -89,11 +85,11 @@ pub(super) fn check_input(path: &Path) -> Result<(), Failure> {
 pub(super) fn save_mesh(
     mesh: &TriMesh,
     output: &Path,
-    coordinates: Coordinates,
+    precision: Precision,
     session: &Session,
 ) -> Result<(), Failure> {
     let staged = session.staging.stage(output)?;
-    io::save(mesh, &staged, &SaveOptions { coordinates }).map_err(|mut error| {
+    io::save(mesh, &staged, &SaveOptions { precision }).map_err(|mut error| {
         // The user knows nothing of the temporary path.
         error.path = output.into();
         error.into()

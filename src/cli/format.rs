@@ -1,34 +1,12 @@
 //! Numbers as users write them, and as users read them.
 
-use super::args::TileNumber;
-use exocarp::offset::{Length, Tolerance};
 use std::num::NonZeroUsize;
-
-/// A distance in model units, or with `%` of the diagonal.
-pub(super) fn length(text: &str) -> Result<Length, String> {
-    match text.strip_suffix('%') {
-        Some(percent) => Ok(Length::OfDiagonal(finite(percent)? / 100.0)),
-        None => Ok(Length::Units(finite(text)?)),
-    }
-}
 
 /// A positive voxel size in model units.
 pub(super) fn voxel(text: &str) -> Result<f64, String> {
     match finite(text)? {
         h if h > 0.0 => Ok(h),
         _ => Err("a voxel size is positive".into()),
-    }
-}
-
-/// A tolerance in model units, or in voxels with an `h` at its end.
-pub(super) fn tolerance(text: &str) -> Result<Tolerance, String> {
-    let (number, unit): (_, fn(f64) -> Tolerance) = match text.strip_suffix('h') {
-        Some(voxels) => (voxels, Tolerance::Voxels),
-        None => (text, Tolerance::Units),
-    };
-    match finite(number)? {
-        t if t > 0.0 => Ok(unit(t)),
-        _ => Err("a tolerance is positive".into()),
     }
 }
 
@@ -47,18 +25,6 @@ pub(super) fn resolution(text: &str) -> Result<u32, String> {
         Ok(0) => Err("a resolution is at least 1".into()),
         Ok(n) => Ok(n),
         Err(_) => Err(format!("a resolution is a whole number from 1 to {}", u32::MAX)),
-    }
-}
-
-/// One of several tiles, as `3/8`.
-pub(super) fn tile(text: &str) -> Result<TileNumber, String> {
-    let wrong = || "a tile is one of several, like 3/8".to_string();
-    let (number, of) = text.split_once('/').ok_or_else(wrong)?;
-    let number = number.trim().parse().map_err(|_| wrong())?;
-    let of = of.trim().parse().map_err(|_| wrong())?;
-    match number {
-        1.. if number <= of => Ok(TileNumber { number, of }),
-        _ => Err(format!("tiles are numbered 1 to {of}")),
     }
 }
 
@@ -123,17 +89,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lengths_are_units_or_percent_of_the_diagonal() {
-        assert_eq!(length("-0.5"), Ok(Length::Units(-0.5)));
-        assert_eq!(length("-1e-3"), Ok(Length::Units(-1e-3)));
-        assert_eq!(length("2%"), Ok(Length::OfDiagonal(0.02)));
-        assert_eq!(length("-2%"), Ok(Length::OfDiagonal(-0.02)));
-        for wrong in ["", "%", "two", "nan", "inf%", "1e999", "2%%", "2 mm"] {
-            assert!(length(wrong).is_err(), "{wrong}");
-        }
-    }
-
-    #[test]
     fn voxels_are_positive_and_finite() {
         assert_eq!(voxel("0.25"), Ok(0.25));
         for wrong in ["0", "-1", "nan", "inf", "x"] {
@@ -147,15 +102,6 @@ mod tests {
         assert_eq!(threads("512").map(NonZeroUsize::get), Ok(512));
         for wrong in ["0", "-1", "4294967295", "18446744073709551616", "two", ""] {
             assert!(threads(wrong).is_err(), "{wrong}");
-        }
-    }
-
-    #[test]
-    fn tolerances_are_units_or_voxels() {
-        assert_eq!(tolerance("0.25"), Ok(Tolerance::Units(0.25)));
-        assert_eq!(tolerance("0.05h"), Ok(Tolerance::Voxels(0.05)));
-        for wrong in ["0", "-1h", "h", "1%", "nan", ""] {
-            assert!(tolerance(wrong).is_err(), "{wrong}");
         }
     }
 

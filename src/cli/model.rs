@@ -2,7 +2,7 @@
 
 use super::args::ModelArguments;
 use super::exit::Failure;
-use super::files::{check_mesh_output, coordinates, save_mesh};
+use super::files::{check_mesh_output, precision, save_mesh};
 use super::format::{counted, short};
 use super::outputs;
 use super::session::{Session, print};
@@ -19,7 +19,7 @@ pub(super) fn run(arguments: &ModelArguments, session: &Session) -> Result<(), F
     check_mesh_output(output, arguments.f64)?;
     outputs::check([output.as_path()])?;
     let mesh = (shape.make)(arguments.detail);
-    session.phase(Phase::Write, || save_mesh(&mesh, output, coordinates(arguments.f64), session))?;
+    session.phase(Phase::Write, || save_mesh(&mesh, output, precision(arguments.f64), session))?;
     session.staging.commit()?;
     session.tell(&format!(
         "{}: {}, {}",

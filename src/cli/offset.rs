@@ -1,6 +1,6 @@
 //! `exocarp offset`: load, clean, offset, write.
 
-use super::args::{OffsetArguments, Sign, TileNumber};
+use super::args::{OffsetArguments, Sign};
 use super::exit::Failure;
 use super::files::{
     Loaded, STORED_HALF_WIDTH, check_mesh_output, check_vdb_output, load_mesh, precision, save_json,
@@ -11,9 +11,10 @@ use super::memory::peak_rss;
 use super::outputs;
 use super::session::{Session, Verbosity};
 use super::statistics::{MeshFacts, Phases, RunFile};
-use super::strategy::{check_pieces, identity, make};
+use super::strategy::{Made, check_pieces, execute, identity};
 use exocarp::mesh::{CleanReport, Topology};
-use exocarp::offset::{EngineTimes, OffsetError, OffsetResult, OffsetSettings, OffsetStatistics, VoxelSize};
+use exocarp::offset::{BandOptions, EngineTimes, OffsetError, OffsetSettings, OffsetStatistics};
+use exocarp::quantity::VoxelSize;
 use exocarp::run::{Bytes, Phase};
 use exocarp::vdb::VdbOptions;
 use serde::Serialize;
@@ -21,13 +22,16 @@ use serde::Serialize;
 /// The usual resolution: fine enough to see the features, a second or so of work.
 pub(super) const DEFAULT_RESOLUTION: u32 = 256;
 
+/// Half-width in voxels of a band that is contoured and not stored, as the statistics file says it.
+const CONTOURED_HALF_WIDTH: f64 = 1.0;
+
 pub(super) fn run(arguments: &OffsetArguments, session: &Session) -> Result<(), Failure> {
     check_outputs(arguments)?;
     let settings = settings(arguments, session)?;
 
     let (loaded, loading) = load_mesh(&arguments.input, session)?;
     warn_of_input(arguments, &loaded, session);
-    let (result, written) = make(&loaded.mesh, arguments, &settings, session)?;
+    let result = execute(&loaded.mesh, arguments, &settings, session)?;
     if result.statistics.edges.sign_jumps > 0 {
         let jumps = counted(result.statistics.edges.sign_jumps as usize, "grid edge", "grid edges");
         session.warn(&format!("the sign jumps along {jumps}; the surface is closed there"));
@@ -51,7 +55,7 @@ pub(super) fn run(arguments: &OffsetArguments, session: &Session) -> Result<(), 
         }
         _ => Ok(()),
     })?;
-    let phases = Phases { loading, engine: result.statistics.times, write: written + write };
+    let phases = Phases { loading, engine: result.statistics.times, write: result.seconds + write };
     if let Some(path) = &arguments.more.stats {
         let input = MeshFacts::of_input(&arguments.input, &loaded.mesh, session);
         let stated = Settings::new(arguments, &settings, &result.statistics, session);
@@ -67,16 +71,15 @@ fn settings(arguments: &OffsetArguments, session: &Session) -> Result<OffsetSett
         Some(h) => VoxelSize::Units(h),
         None => VoxelSize::Resolution(arguments.resolution.unwrap_or(DEFAULT_RESOLUTION)),
     };
+    let band = BandOptions { half_width: STORED_HALF_WIDTH, closest: arguments.closest };
     let settings = OffsetSettings {
         distance: arguments.distance,
         voxel,
-        sign: arguments.sign.mode(),
-        half_width: if arguments.more.vdb.is_some() { STORED_HALF_WIDTH } else { 1.0 },
-        keep_band: arguments.more.vdb.is_some(),
-        keep_closest: arguments.closest,
+        open_input: arguments.sign.open_input(),
+        band: arguments.more.vdb.is_some().then_some(band),
         precision: precision(arguments.more.f64),
         tolerance: arguments.tolerance,
-        resolve: arguments.resolve,
+        max_halvings: arguments.resolve,
         max_memory: session.max_memory,
     };
     settings.validate().map_err(OffsetError::from)?;
@@ -165,14 +168,14 @@ impl Settings {
             resolution,
             sign: arguments.sign.name(),
             threads: session.run.threads(),
-            half_width: settings.half_width,
+            half_width: settings.band.map_or(CONTOURED_HALF_WIDTH, |band| band.half_width),
         }
     }
 }
 
 fn tell(
     arguments: &OffsetArguments,
-    result: &OffsetResult,
+    result: &Made,
     phases: &Phases<EngineTimes>,
     session: &Session,
 ) -> Result<(), Failure> {
@@ -182,7 +185,7 @@ fn tell(
             let triangles = counted(s.contour.triangles as usize, "triangle", "triangles");
             let vertices = counted(s.contour.vertices as usize, "vertex", "vertices");
             let slabs = match (arguments.tile, s.slabs) {
-                (Some(TileNumber { number, of }), _) => format!(" in tile {number} of {of}"),
+                (Some(tile), _) => format!(" in tile {} of {}", tile.index(), tile.count()),
                 (None, 0 | 1) => String::new(),
                 (None, slabs) => format!(" in {slabs} slabs"),
             };
@@ -201,7 +204,7 @@ fn tell(
 }
 
 /// Phases and counts.
-fn summary(result: &OffsetResult, phases: &Phases<EngineTimes>) -> String {
+fn summary(result: &Made, phases: &Phases<EngineTimes>) -> String {
     let s = &result.statistics;
     let seconds = |name: &str, t: f64| format!("  {name:<10} {t:>8.3} s\n");
     let count = |name: &str, n: u64| format!("  {name:<28} {:>14}\n", grouped(n));

@@ -43,11 +43,11 @@ impl Session {
         let cancel = CancelToken::default();
         let staging = Staging::new(cancel.clone());
         handle_interrupt(cancel.clone(), staging.clone());
-        let mut run = RunSettings::with_threads(common.threads.map_or(0, |n| n.get()))?.cancelled_by(cancel);
+        let mut run = RunSettings::with_threads(common.threads.map_or(0, |n| n.get()))?.with_cancel(cancel);
         let visible = verbosity > Verbosity::Quiet && std::io::stderr().is_terminal();
         let bar = visible.then(|| Arc::new(Bar::new()));
         if let Some(bar) = &bar {
-            run = run.reporting_to(bar.clone());
+            run = run.with_progress(bar.clone());
         }
         Ok(Session { started, verbosity, run, max_memory: common.max_memory, staging, bar })
     }

@@ -1,64 +1,75 @@
 //! The ways to make an offset: as a whole, slab by slab, one tile of it, or its band only.
 
-use super::args::{OffsetArguments, TileNumber};
+use super::args::OffsetArguments;
 use super::exit::Failure;
-use super::files::{coordinates, format, save_mesh};
+use super::files::{format, precision, save_mesh};
 use super::session::Session;
-use exocarp::contour::SlabContour;
 use exocarp::io::{Format, MeshStream, SaveError, Tile, save_tile};
-use exocarp::mesh::TriMesh;
+use exocarp::mesh::{MeshChunk, TriMesh};
 use exocarp::offset::{
-    Cut, OffsetError, OffsetResult, OffsetSettings, PieceSink, SinkError, available_memory, job, offset,
-    offset_band, offset_in_slabs,
+    BandResult, MeshSink, OffsetError, OffsetResult, OffsetSettings, OffsetStatistics, Partition, SinkError,
+    StreamResult, available_memory, job, offset, offset_band, offset_streamed,
 };
+use exocarp::quantity::TileIndex;
+use exocarp::vdb::Band;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Memory of a streamed run where no limit is given: 1 GiB.
 const STREAM_MEMORY: u64 = 1 << 30;
 
-/// A way to make an offset.
+/// A way to make the mesh of an offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Way {
+enum Strategy {
     /// All at once, or slab by slab within so many bytes where that does not fit.
     Whole { or_slabs: Option<u64> },
     /// Slab by slab, within so many bytes.
     Slabs(u64),
     /// One tile.
-    Tile(TileNumber),
+    Tile(TileIndex),
 }
 
-/// Makes the offset and stages its mesh. Returns with it the seconds that writing took.
-pub(super) fn make(
+/// An offset whose mesh, if there is one, is staged.
+pub(super) struct Made {
+    pub band: Option<Band>,
+    pub statistics: OffsetStatistics,
+    /// Seconds that writing the mesh took.
+    pub seconds: f64,
+}
+
+/// Makes the offset and stages its mesh.
+pub(super) fn execute(
     mesh: &TriMesh,
     arguments: &OffsetArguments,
     settings: &OffsetSettings,
     session: &Session,
-) -> Result<(OffsetResult, f64), Failure> {
+) -> Result<Made, Failure> {
     let run = &session.run;
     let Some(output) = &arguments.output else {
-        return Ok((offset_band(mesh, settings, run)?, 0.0));
+        let BandResult { band, statistics } = offset_band(mesh, settings, run)?;
+        return Ok(Made { band: Some(band), statistics, seconds: 0.0 });
     };
-    match way(arguments, output, session)? {
-        Way::Whole { or_slabs } => {
+    match strategy(arguments, output, session)? {
+        Strategy::Whole { or_slabs } => {
             let result = match (offset(mesh, settings, run), or_slabs) {
                 (Err(OffsetError::Memory(_)), Some(memory)) => {
                     return in_slabs(mesh, arguments, settings, memory, output, session);
                 }
                 (result, _) => result?,
             };
+            let OffsetResult { mesh, precision, band, statistics } = result;
             let started = Instant::now();
-            save_mesh(&result.mesh, output, coordinates(arguments.more.f64), session)?;
-            Ok((result, started.elapsed().as_secs_f64()))
+            save_mesh(&mesh, output, precision, session)?;
+            Ok(Made { band, statistics, seconds: started.elapsed().as_secs_f64() })
         }
-        Way::Slabs(memory) => in_slabs(mesh, arguments, settings, memory, output, session),
-        Way::Tile(TileNumber { number, of }) => {
-            let staged = session.staging.stage(output)?;
-            let tile = identity(TileNumber { number, of }, mesh, settings);
-            let mut sink = Tiled { staged, tile, f64: arguments.more.f64, seconds: 0.0 };
-            let result = offset_in_slabs(mesh, settings, Cut::Tile { number, of }, &mut sink, run);
-            let result = result.map_err(|error| of_offset(error, output))?;
-            Ok((result, sink.seconds))
+        Strategy::Slabs(memory) => in_slabs(mesh, arguments, settings, memory, output, session),
+        Strategy::Tile(index) => {
+            let path = session.staging.stage(output)?;
+            let tile = identity(index, mesh, settings);
+            let mut sink = TileFile { path, tile, f64: arguments.more.f64, seconds: 0.0 };
+            let result = offset_streamed(mesh, settings, Partition::Tile(index), &mut sink, run);
+            let StreamResult { band, statistics } = result.map_err(|error| of_offset(error, output))?;
+            Ok(Made { band, statistics, seconds: sink.seconds })
         }
     }
 }
@@ -71,26 +82,26 @@ fn in_slabs(
     memory: u64,
     output: &Path,
     session: &Session,
-) -> Result<(OffsetResult, f64), Failure> {
+) -> Result<Made, Failure> {
     let staged = session.staging.stage(output)?;
     let named = |error| of_output(error, output);
-    let stream = MeshStream::create(&staged, coordinates(arguments.more.f64)).map_err(named)?;
-    let mut sink = Streamed { stream, seconds: 0.0 };
-    let result = offset_in_slabs(mesh, settings, Cut::Memory(memory), &mut sink, &session.run)
-        .map_err(|error| of_offset(error, output))?;
+    let stream = MeshStream::create(&staged, precision(arguments.more.f64)).map_err(named)?;
+    let mut sink = TimedStream { stream, seconds: 0.0 };
+    let result = offset_streamed(mesh, settings, Partition::Memory(memory), &mut sink, &session.run);
+    let StreamResult { band, statistics } = result.map_err(|error| of_offset(error, output))?;
     let started = Instant::now();
     sink.stream.finish().map_err(named)?;
-    Ok((result, sink.seconds + started.elapsed().as_secs_f64()))
+    Ok(Made { band, statistics, seconds: sink.seconds + started.elapsed().as_secs_f64() })
 }
 
-fn way(arguments: &OffsetArguments, output: &Path, session: &Session) -> Result<Way, Failure> {
+fn strategy(arguments: &OffsetArguments, output: &Path, session: &Session) -> Result<Strategy, Failure> {
     let in_pieces = matches!(format(output)?, Format::Ply | Format::Stl);
     let limit = session.max_memory;
     Ok(match (arguments.tile, arguments.stream) {
-        (Some(tile), _) => Way::Tile(tile),
-        (None, true) => Way::Slabs(limit.unwrap_or(STREAM_MEMORY)),
+        (Some(tile), _) => Strategy::Tile(tile),
+        (None, true) => Strategy::Slabs(limit.unwrap_or(STREAM_MEMORY)),
         (None, false) => {
-            Way::Whole { or_slabs: in_pieces.then(|| limit.or_else(available_memory)).flatten() }
+            Strategy::Whole { or_slabs: in_pieces.then(|| limit.or_else(available_memory)).flatten() }
         }
     })
 }
@@ -116,14 +127,10 @@ pub(super) fn check_pieces(arguments: &OffsetArguments) -> Result<(), Failure> {
     }
 }
 
-/// What a tile's files say of it: its number, and what identifies the input and what is made of it.
-pub(super) fn identity(tile: TileNumber, mesh: &TriMesh, settings: &OffsetSettings) -> Tile {
-    Tile { number: tile.number, of: tile.of, job: job(mesh, settings) }
-}
-
-/// The user knows nothing of the temporary path.
-fn of_output(error: SaveError, output: &Path) -> Failure {
-    SaveError { path: output.into(), ..error }.into()
+/// Returns the identity of a tile, which its files carry: its number, and the number that tells
+/// the input and the settings.
+pub(super) fn identity(index: TileIndex, mesh: &TriMesh, settings: &OffsetSettings) -> Tile {
+    Tile { index, job: job(mesh, settings) }
 }
 
 /// Names the output in an error of the file that the mesh goes to.
@@ -137,43 +144,47 @@ fn of_offset(error: OffsetError, output: &Path) -> Failure {
     }
 }
 
-/// Pieces go to a file as they come.
-struct Streamed {
+/// Names the output instead of the temporary path, of which the user knows nothing.
+fn of_output(error: SaveError, output: &Path) -> Failure {
+    SaveError { path: output.into(), ..error }.into()
+}
+
+/// A mesh file that takes chunks as they come, with the seconds that this took.
+struct TimedStream {
     stream: MeshStream,
     seconds: f64,
 }
 
-impl PieceSink for Streamed {
+impl MeshSink for TimedStream {
     fn restart(&mut self) -> Result<(), SinkError> {
-        Ok(self.stream.clear()?)
+        self.stream.restart()
     }
 
-    fn piece(&mut self, piece: &SlabContour) -> Result<(), SinkError> {
+    fn chunk(&mut self, chunk: &MeshChunk) -> Result<(), SinkError> {
         let started = Instant::now();
-        self.stream.append(&piece.mesh, piece.vertices.clone(), piece.triangles.clone())?;
+        self.stream.chunk(chunk)?;
         self.seconds += started.elapsed().as_secs_f64();
         Ok(())
     }
 }
 
-/// The only piece of a tile.
-struct Tiled {
-    staged: PathBuf,
+/// The file of a tile, with the seconds that writing took.
+struct TileFile {
+    path: PathBuf,
     tile: Tile,
     f64: bool,
     seconds: f64,
 }
 
-impl PieceSink for Tiled {
+impl MeshSink for TileFile {
     fn restart(&mut self) -> Result<(), SinkError> {
         // A tile that the surface does not pass is a file without triangles.
-        Ok(save_tile(&self.staged, &TriMesh::default(), 0..0, 0..0, self.tile, coordinates(self.f64))?)
+        self.chunk(&MeshChunk::empty())
     }
 
-    fn piece(&mut self, piece: &SlabContour) -> Result<(), SinkError> {
+    fn chunk(&mut self, chunk: &MeshChunk) -> Result<(), SinkError> {
         let started = Instant::now();
-        let (vertices, triangles) = (piece.vertices.clone(), piece.triangles.clone());
-        save_tile(&self.staged, &piece.mesh, vertices, triangles, self.tile, coordinates(self.f64))?;
+        save_tile(&self.path, chunk, self.tile, precision(self.f64))?;
         self.seconds += started.elapsed().as_secs_f64();
         Ok(())
     }

@@ -3,8 +3,8 @@
 use super::args::ThickenArguments;
 use super::exit::Failure;
 use super::files::{
-    STORED_HALF_WIDTH, check_mesh_output, check_vdb_output, coordinates, load_mesh, precision, save_json,
-    save_mesh, save_vdb, vdb_options,
+    STORED_HALF_WIDTH, check_mesh_output, check_vdb_output, load_mesh, precision, save_json, save_mesh,
+    save_vdb, vdb_options,
 };
 use super::format::{counted, grouped, short};
 use super::outputs;
@@ -12,7 +12,8 @@ use super::session::{Session, Verbosity};
 use super::statistics::{MeshFacts, Phases, RunFile};
 use super::thickness_map;
 use exocarp::mesh::CleanReport;
-use exocarp::offset::{Length, OffsetSettings, VoxelSize, offset_band};
+use exocarp::offset::{BandOptions, OffsetSettings, offset_band};
+use exocarp::quantity::{Length, VoxelSize};
 use exocarp::run::Phase;
 use exocarp::thicken::{
     ThickenError, ThickenResult, ThickenSettings, ThickenStatistics, ThickenTimes, thicken,
@@ -52,7 +53,7 @@ pub(super) fn run(arguments: &ThickenArguments, session: &Session) -> Result<(),
         ));
     }
     let (_, write) = session.phase(Phase::Write, || {
-        save_mesh(&result.mesh, &arguments.output, coordinates(arguments.more.f64), session)?;
+        save_mesh(&result.mesh, &arguments.output, precision(arguments.more.f64), session)?;
         arguments.more.vdb.as_deref().map_or(Ok(()), |path| save_level_set(&result, path, arguments, session))
     })?;
     let phases = Phases { loading, engine: statistics.times, write };
@@ -75,13 +76,12 @@ fn save_level_set(
     let settings = OffsetSettings {
         distance: Length::Units(0.0),
         voxel: VoxelSize::Units(result.statistics.voxel),
-        half_width: STORED_HALF_WIDTH,
-        keep_band: true,
+        band: Some(BandOptions { half_width: STORED_HALF_WIDTH, closest: false }),
         max_memory: session.max_memory,
         ..OffsetSettings::default()
     };
     let solid = offset_band(&result.mesh, &settings, &session.run)?;
-    solid.band.map_or(Ok(()), |band| save_vdb(&band, path, None, &vdb_options(&arguments.more), session))
+    save_vdb(&solid.band, path, None, &vdb_options(&arguments.more), session)
 }
 
 fn settings(arguments: &ThickenArguments, session: &Session) -> Result<ThickenSettings, Failure> {

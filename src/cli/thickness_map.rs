@@ -38,7 +38,7 @@ pub(super) fn load(path: &Path, input: &Path, mesh: &TriMesh) -> Result<Vec<f64>
     Ok(mesh.vertices.iter().map(|v| of_point.get(&key(v)).copied().unwrap_or(f64::NAN)).collect())
 }
 
-/// Coordinates as bits; both zeros are one.
+/// Precision as bits; both zeros are one.
 fn key(v: &[f64; 3]) -> [u64; 3] {
     v.map(|x| (x + 0.0).to_bits())
 }

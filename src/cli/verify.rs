@@ -7,7 +7,7 @@ use super::format::{grouped, short};
 use super::outputs;
 use super::session::Session;
 use exocarp::mesh::{Topology, TriMesh};
-use exocarp::offset::Length;
+use exocarp::quantity::Length;
 use exocarp::verify::{
     IntersectionReport, ReportedLength, ShellReport, Statistics, Subject, TopologyReport, VerifyReport,
     VerifySettings, verify,
@@ -58,7 +58,7 @@ fn settings(arguments: &VerifyArguments, input: &TriMesh) -> VerifySettings {
         voxel: arguments.voxel,
         tolerance: arguments.tolerance.map(|tolerance| match tolerance {
             Length::Units(e) => e,
-            Length::OfDiagonal(fraction) => fraction * diagonal,
+            Length::DiagonalFraction(fraction) => fraction * diagonal,
         }),
         samples: arguments.samples,
         seed: arguments.seed,

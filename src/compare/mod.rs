@@ -33,9 +33,11 @@ pub use process::{Lost, Programs, WORKER, measure, probe_meshlib, worker_argumen
 pub use table::{Column, Row, rows, text};
 pub use worker::{Job, work};
 
-use crate::io::{self, Coordinates, SaveOptions};
+use crate::io::{self, SaveOptions};
 use crate::mesh::{Topology, TriMesh};
-use crate::offset::{InputError, Length, OffsetSettings, VoxelSize};
+use crate::offset::{InputError, OffsetSettings};
+use crate::quantity::Precision;
+use crate::quantity::{Length, VoxelSize};
 use crate::run::RunSettings;
 use crate::verify::{VerifyReport, VerifySettings, verify};
 use serde::Serialize;
@@ -62,7 +64,7 @@ pub struct CompareSettings {
 impl Default for CompareSettings {
     fn default() -> Self {
         CompareSettings {
-            distance: Length::OfDiagonal(0.02),
+            distance: Length::DiagonalFraction(0.02),
             voxel: VoxelSize::Resolution(256),
             methods: Method::ALL.into(),
             // The least that has a median which one slow run does not move.
@@ -148,7 +150,7 @@ pub fn compare(
     let methods = available(&settings.methods, programs, run, &mut comparison.notes)?;
     let directory = tempfile::tempdir().map_err(CompareError::Temporary)?;
     let input = directory.path().join("input.ply");
-    io::save(mesh, &input, &SaveOptions { coordinates: Coordinates::F64 })?;
+    io::save(mesh, &input, &SaveOptions { precision: Precision::F64 })?;
     let output = |method: Method| directory.path().join(format!("{}.ply", method.name()));
     comparison.results = methods.into_iter().map(MethodResult::new).collect();
 
@@ -225,7 +227,7 @@ fn prepare(
         return Err(InputError::Misoriented { count: defects.misoriented_edges, first: ends(first) }.into());
     }
     let offset = OffsetSettings { distance: settings.distance, voxel: settings.voxel, ..Default::default() };
-    let resolved = offset.resolve(mesh)?;
+    let resolved = offset.in_model_units(mesh)?;
     let [lo, hi] = mesh.bounding_box().unwrap_or_default();
     Ok(Comparison {
         input_triangles: mesh.triangles.len(),

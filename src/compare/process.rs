@@ -272,7 +272,7 @@ mod tests {
     #[test]
     fn cancelling_kills_the_process() {
         let cancel = CancelToken::default();
-        let run = RunSettings::with_threads(1).unwrap().cancelled_by(cancel.clone());
+        let run = RunSettings::with_threads(1).unwrap().with_cancel(cancel.clone());
         cancel.cancel();
         let mut command = Command::new("sleep");
         command.arg("60");

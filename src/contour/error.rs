@@ -1,6 +1,6 @@
 //! Failures of the contour.
 
-use super::precision::Precision;
+use crate::quantity::Precision;
 use crate::run::Cancelled;
 
 /// Why contouring failed.

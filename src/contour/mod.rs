@@ -42,7 +42,6 @@
 
 mod error;
 mod implicit_surface;
-mod precision;
 mod rounded_lattice;
 mod settings;
 mod statistics;
@@ -56,11 +55,11 @@ mod optimize;
 
 mod slab;
 
+pub use crate::quantity::Precision;
 pub use error::{ContourError, TooManyVertices};
 pub use implicit_surface::{Creases, Surface};
 pub use optimize::MAX_TRIANGLE_REACH;
 pub use polygon::{CutTimes, cut_times};
-pub use precision::Precision;
 pub use settings::{ContourSettings, CutMethod};
 pub(crate) use slab::contour_by_edge;
 pub use slab::{SlabContour, UnorderedContour, contour, contour_slab, halo};

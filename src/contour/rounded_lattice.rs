@@ -2,8 +2,8 @@
 //! anything is decided on them. Rounding afterwards would void every decision.
 
 use super::error::ContourError;
-use super::precision::Precision;
 use crate::lattice::{Ijk, Lattice};
+use crate::quantity::Precision;
 
 /// How far vertices stay from the walls of their cell, in voxels, as long as rounding allows. Smaller values
 /// let triangles degenerate to needles of that width; larger ones blunt features that lie close to a cell's

@@ -1,7 +1,7 @@
 //! Settings of the contour.
 
-use super::precision::Precision;
 use crate::lattice::Slab;
+use crate::quantity::Precision;
 
 /// Settings of a contour.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

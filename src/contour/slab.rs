@@ -5,7 +5,6 @@ use super::implicit_surface::Surface;
 use super::mesh::LeafMesh;
 use super::optimize::{BORDER_LEAVES, RECOVERY_STAGES, TOLERANCE_STAGES, recover, refine};
 use super::polygon::{Triangulation, triangulate};
-use super::precision::Precision;
 use super::settings::ContourSettings;
 use super::statistics::ContourStatistics;
 use super::vertex::{Cells, PlacedVertices, Relocation, with_vertices};
@@ -13,6 +12,7 @@ use crate::band::{LeafId, SignField};
 use crate::edge::Crossings;
 use crate::lattice::{LEAF_DIM, Lattice};
 use crate::mesh::TriMesh;
+use crate::quantity::Precision;
 use crate::run::{Cancelled, RunSettings};
 use std::ops::Range;
 

@@ -223,6 +223,9 @@ pub enum SaveErrorKind {
         /// The triangle.
         triangle: usize,
     },
+    /// A format without 64-bit coordinates.
+    #[error("{0} has no 64-bit coordinates; write .ply, .obj or .off, or choose 32-bit coordinates")]
+    NoF64(Format),
     /// A format that cannot be written piece by piece.
     #[error("{0} cannot be written piece by piece; write .ply or .stl")]
     NotInPieces(Format),

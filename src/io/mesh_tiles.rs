@@ -6,26 +6,23 @@
 
 use super::error::{LoadErrorKind, SaveError, SaveErrorKind};
 use super::tile::{MergeError, MergeErrorKind, Tile, check_complete};
-use super::{Coordinates, Format, ply, stl};
-use crate::mesh::TriMesh;
+use super::{Format, ply, stl};
+use crate::mesh::MeshChunk;
+use crate::quantity::Precision;
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Saves the vertices and triangles of `mesh` with the given numbers as a tile, in place: not atomically. There may be
-/// none.
+/// Saves a chunk of a mesh as a tile, in place: not atomically. The chunk may have no triangles.
 ///
 /// # Errors
 /// When the extension is not that of PLY or STL, or writing fails.
 pub fn save_tile(
     path: &Path,
-    mesh: &TriMesh,
-    vertices: Range<usize>,
-    triangles: Range<usize>,
+    chunk: &MeshChunk,
     tile: Tile,
-    coordinates: Coordinates,
+    coordinates: Precision,
 ) -> Result<(), SaveError> {
     let at = |kind| SaveError { path: path.to_path_buf(), kind };
     let format = Format::of(path).map_err(|e| at(SaveErrorKind::Extension(e)))?;
@@ -33,8 +30,8 @@ pub fn save_tile(
         let mut file = BufWriter::with_capacity(1 << 20, File::create(path)?);
         match format {
             Format::Ply => {
-                let own = vertices.len() as u64;
-                let (all, numbered) = with_others(mesh, vertices, triangles);
+                let own = chunk.vertices().len() as u64;
+                let (all, numbered) = with_others(chunk);
                 let comments = [tile.text(&own_vertices(own))];
                 let header = ply::header(all.len() as u64, numbered.len() as u64, coordinates, &comments);
                 file.write_all(&header)?;
@@ -42,9 +39,9 @@ pub fn save_tile(
                 ply::write_faces(numbered, &mut file)?;
             }
             Format::Stl => {
-                let title = tile.text(&own_vertices(vertices.len() as u64));
-                file.write_all(&stl::titled_head(&title, triangles.len() as u32))?;
-                stl::write_triangles(triangles.map(|t| mesh.corners(t)), &mut file)?;
+                let title = tile.text(&own_vertices(chunk.vertices().len() as u64));
+                file.write_all(&stl::titled_head(&title, chunk.triangle_count() as u32))?;
+                stl::write_triangles(chunk.corners(), &mut file)?;
             }
             Format::Obj | Format::Off => return Ok(None),
         }
@@ -64,15 +61,11 @@ fn parse(text: &str) -> Option<(Tile, u64)> {
     Some((tile, note.strip_suffix(" own vertices")?.parse().ok()?))
 }
 
-/// The vertices with the given numbers and after them the others that the triangles need; and the triangles with their
-/// numbers among these.
-fn with_others(
-    mesh: &TriMesh,
-    vertices: Range<usize>,
-    triangles: Range<usize>,
-) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+/// Returns the vertices of a chunk and after them the others that its triangles need; and the
+/// triangles with their numbers among these.
+fn with_others(chunk: &MeshChunk) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+    let (mesh, vertices, used) = (chunk.around(), chunk.local_vertices(), chunk.local_triangles());
     let is_own = |v: u32| vertices.contains(&(v as usize));
-    let used = &mesh.triangles[triangles];
     let mut others: Vec<u32> = used.as_flattened().iter().copied().filter(|&v| !is_own(v)).collect();
     others.sort_unstable();
     others.dedup();
@@ -96,7 +89,7 @@ struct TileFile {
     own: u64,
     vertices: u64,
     triangles: u64,
-    coordinates: Coordinates,
+    coordinates: Precision,
     /// First byte of the vertices, or of the triangles of STL.
     body: u64,
 }
@@ -144,8 +137,7 @@ impl TileFile {
         else {
             return Ok(None);
         };
-        let coordinates =
-            if find("property double ").is_some() { Coordinates::F64 } else { Coordinates::F32 };
+        let coordinates = if find("property double ").is_some() { Precision::F64 } else { Precision::F32 };
         let comments = [tile.text(&own_vertices(own))];
         let is_ours = ply::header(vertices, triangles, coordinates, &comments) == text.as_bytes();
         let body = text.len() as u64;
@@ -176,7 +168,7 @@ impl TileFile {
             own,
             vertices: 0,
             triangles,
-            coordinates: Coordinates::F32,
+            coordinates: Precision::F32,
             body: stl::HEAD as u64,
         }))
     }
@@ -184,8 +176,8 @@ impl TileFile {
     /// Bytes of a vertex.
     fn vertex(&self) -> usize {
         match self.coordinates {
-            Coordinates::F32 => 12,
-            Coordinates::F64 => 24,
+            Precision::F32 => 12,
+            Precision::F64 => 24,
         }
     }
 
@@ -321,7 +313,7 @@ fn merge_ply(
 /// The tiles by number, all of one work.
 fn sorted(paths: &[PathBuf]) -> Result<Vec<TileFile>, MergeError> {
     let mut tiles: Vec<TileFile> = paths.iter().map(|path| TileFile::open(path)).collect::<Result<_, _>>()?;
-    tiles.sort_by_key(|tile| tile.tile.number);
+    tiles.sort_by_key(|tile| tile.tile.index.index());
     check_complete(&tiles.iter().map(|t| (t.path.as_path(), t.tile)).collect::<Vec<_>>())?;
     let first = &tiles[0];
     for tile in &tiles {

@@ -26,7 +26,7 @@
 //! - [`save`] replaces an existing file whole and only when the new one is complete: the content goes to a
 //!   temporary file beside it, which is renamed. A failure leaves the old file and no other.
 //! - A mesh that was saved loads again with the same triangles and the same coordinates: those of the mesh
-//!   rounded to f32, or as they are with [`Coordinates::F64`], which STL has not. So do text formats: readers
+//!   rounded to f32, or as they are with [`Precision::F64`], which STL has not. So do text formats: readers
 //!   of 32 and of 64 bits get the same numbers.
 
 pub(crate) mod atomic;
@@ -57,6 +57,7 @@ pub use stream::MeshStream;
 pub use tile::{MergeError, MergeErrorKind, Tile};
 
 use crate::mesh::TriMesh;
+use crate::quantity::Precision;
 use error::ReadError;
 use loaded::Content;
 
@@ -109,32 +110,12 @@ impl std::fmt::Display for Format {
     }
 }
 
-/// The number type of coordinates in a file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Coordinates {
-    /// Single precision, which every program reads. In text, too: most readers round what they read to that.
-    #[default]
-    F32,
-    /// Double precision.
-    F64,
-}
-
-impl Coordinates {
-    /// The nearest coordinate of this type.
-    pub(crate) fn round(self, x: f64) -> f64 {
-        match self {
-            Coordinates::F32 => f64::from(x as f32),
-            Coordinates::F64 => x,
-        }
-    }
-}
-
 /// Options for writing a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SaveOptions {
-    /// The number type of coordinates. STL knows single precision only. In text (OBJ, OFF) there are as many
-    /// digits as a reader of 64 bits needs to get exactly that number.
-    pub coordinates: Coordinates,
+    /// The number type of coordinates. STL holds 32-bit coordinates only. In text (OBJ, OFF) there
+    /// are as many digits as a reader of 64 bits needs to get exactly that number.
+    pub precision: Precision,
 }
 
 /// Loads the mesh in the file `path`, unchanged but for polygons, which are triangulated, and for vertices
@@ -205,10 +186,10 @@ pub fn save(mesh: &TriMesh, path: &Path, options: &SaveOptions) -> Result<(), Sa
     let format = Format::of(path).map_err(|e| at(SaveErrorKind::Extension(e)))?;
     check_writable(mesh, format, options).map_err(at)?;
     atomic::write_atomically(path, |writer| match format {
-        Format::Obj => obj::write(mesh, options.coordinates, writer),
-        Format::Ply => ply::write(mesh, options.coordinates, writer),
+        Format::Obj => obj::write(mesh, options.precision, writer),
+        Format::Ply => ply::write(mesh, options.precision, writer),
         Format::Stl => stl::write(mesh, writer),
-        Format::Off => off::write(mesh, options.coordinates, writer),
+        Format::Off => off::write(mesh, options.precision, writer),
     })
 }
 
@@ -221,12 +202,20 @@ impl TriMesh {
         load(path.as_ref())
     }
 
-    /// Saves the mesh with the default options, see [`save`].
+    /// Saves the mesh as it is, see [`save`]: with 32-bit coordinates where all of them are such
+    /// numbers, and else with 64-bit ones. STL holds 32 bits only, and gets the nearest.
     ///
     /// # Errors
     /// See [`save`].
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
-        save(self, path.as_ref(), &SaveOptions::default())
+        let path = path.as_ref();
+        let is_single = |x: &f64| f64::from(*x as f32) == *x;
+        let precision = match Format::of(path) {
+            Ok(Format::Stl) => Precision::F32,
+            _ if self.vertices.as_flattened().iter().all(is_single) => Precision::F32,
+            _ => Precision::F64,
+        };
+        save(self, path, &SaveOptions { precision })
     }
 }
 
@@ -250,7 +239,10 @@ fn length(source: &mut impl Seek) -> Result<u64, ReadError> {
 
 /// Refuses, before the first byte is written, what would make a file that no one can read.
 fn check_writable(mesh: &TriMesh, format: Format, options: &SaveOptions) -> Result<(), SaveErrorKind> {
-    let single = format == Format::Stl || options.coordinates == Coordinates::F32;
+    if format == Format::Stl && options.precision == Precision::F64 {
+        return Err(SaveErrorKind::NoF64(format));
+    }
+    let single = options.precision == Precision::F32;
     let fits = |x: f64| if single { (x as f32).is_finite() } else { x.is_finite() };
     if let Some(vertex) = mesh.vertices.iter().position(|v| !v.iter().all(|&x| fits(x))) {
         return Err(SaveErrorKind::Coordinate { vertex, position: mesh.vertices[vertex] });

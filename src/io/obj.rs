@@ -7,12 +7,13 @@
 
 use std::io::{BufRead, BufReader, Read, Seek, Write};
 
+use super::Format;
 use super::error::{LoadErrorKind, ReadError, quote};
 use super::loaded::{Content, NonFinite};
 use super::polygon::PolygonMesh;
 use super::text::{Text, is_not_finite, parse, write_number};
-use super::{Coordinates, Format};
 use crate::mesh::TriMesh;
+use crate::quantity::Precision;
 
 /// Reads a mesh.
 pub(super) fn read<R: Read + Seek>(source: R) -> Result<Content, ReadError> {
@@ -228,11 +229,7 @@ impl<R: BufRead + Seek> Filter<R> {
 }
 
 /// Writes a mesh.
-pub(super) fn write(
-    mesh: &TriMesh,
-    coordinates: Coordinates,
-    writer: &mut impl Write,
-) -> std::io::Result<()> {
+pub(super) fn write(mesh: &TriMesh, coordinates: Precision, writer: &mut impl Write) -> std::io::Result<()> {
     for v in &mesh.vertices {
         writer.write_all(b"v")?;
         for &x in v {

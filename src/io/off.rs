@@ -5,12 +5,13 @@
 
 use std::io::{BufReader, Read, Write};
 
+use super::Format;
 use super::error::{LoadErrorKind, ReadError, quote};
 use super::loaded::Content;
 use super::polygon::PolygonMesh;
 use super::text::{Text, write_number};
-use super::{Coordinates, Format};
 use crate::mesh::TriMesh;
+use crate::quantity::Precision;
 
 /// The shortest text of a vertex ("0 0 0" and a line end) and of a face ("0" and a line end): what a file
 /// can at most contain is reserved before its content is seen, whatever its header says.
@@ -108,11 +109,7 @@ fn say_which(mut error: ReadError, name: &str, i: u64, count: u64) -> ReadError 
 }
 
 /// Writes a mesh.
-pub(super) fn write(
-    mesh: &TriMesh,
-    coordinates: Coordinates,
-    writer: &mut impl Write,
-) -> std::io::Result<()> {
+pub(super) fn write(mesh: &TriMesh, coordinates: Precision, writer: &mut impl Write) -> std::io::Result<()> {
     writeln!(writer, "OFF\n{} {} 0", mesh.vertices.len(), mesh.triangles.len())?;
     for v in &mesh.vertices {
         let [x, y, z] = v.map(|x| coordinates.round(x));

@@ -248,7 +248,7 @@ fn expect<R: BufRead>(text: &mut Text<R>, expected: &str) -> Result<(), ReadErro
     }
 }
 
-/// Writes a mesh, binary. Coordinates are rounded to f32.
+/// Writes a mesh, binary. Precision are rounded to f32.
 pub(super) fn write(mesh: &TriMesh, writer: &mut impl Write) -> std::io::Result<()> {
     writer.write_all(&head(mesh.triangles.len() as u32))?;
     write_triangles((0..mesh.triangles.len()).map(|t| mesh.corners(t)), writer)

@@ -5,13 +5,13 @@
 //! gets their number at the end.
 
 use super::error::{SaveError, SaveErrorKind};
-use super::{Coordinates, Format, ply, stl};
+use super::{Format, ply, stl};
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use crate::mesh::TriMesh;
+use crate::mesh::MeshChunk;
+use crate::quantity::Precision;
 
 /// Bytes collected before they are written.
 const BUFFER: usize = 1 << 20;
@@ -20,7 +20,7 @@ const BUFFER: usize = 1 << 20;
 #[derive(Debug)]
 pub struct MeshStream {
     path: PathBuf,
-    coordinates: Coordinates,
+    coordinates: Precision,
     vertices: u64,
     triangles: u64,
     body: Body,
@@ -40,7 +40,7 @@ impl MeshStream {
     ///
     /// # Errors
     /// When the extension is another one, or no file can be created there.
-    pub fn create(path: &Path, coordinates: Coordinates) -> Result<MeshStream, SaveError> {
+    pub fn create(path: &Path, coordinates: Precision) -> Result<MeshStream, SaveError> {
         let at = |kind| SaveError { path: path.to_path_buf(), kind };
         let format = Format::of(path).map_err(|e| at(SaveErrorKind::Extension(e)))?;
         let create = || -> io::Result<Option<Body>> {
@@ -64,38 +64,27 @@ impl MeshStream {
         Ok(MeshStream { path: path.to_path_buf(), coordinates, vertices: 0, triangles: 0, body })
     }
 
-    /// Adds the vertices and triangles of `mesh` with the given numbers. The other vertices of these triangles
-    /// are those that stand before and after in `mesh`: of pieces that were added before, or will be.
+    /// Adds a chunk. Chunks come in the order of the whole, the first one with vertex 0.
     ///
     /// # Errors
     /// When writing fails, or the format cannot hold the mesh.
-    pub fn append(
-        &mut self,
-        mesh: &TriMesh,
-        vertices: Range<usize>,
-        triangles: Range<usize>,
-    ) -> Result<(), SaveError> {
-        let own = &mesh.vertices[vertices.clone()];
-        let single = matches!(self.body, Body::Stl(_)) || self.coordinates == Coordinates::F32;
+    pub fn append(&mut self, chunk: &MeshChunk) -> Result<(), SaveError> {
+        let own = chunk.vertices();
+        let single = matches!(self.body, Body::Stl(_)) || self.coordinates == Precision::F32;
         let fits = |x: f64| if single { (x as f32).is_finite() } else { x.is_finite() };
         if let Some(vertex) = own.iter().position(|v| !v.iter().all(|&x| fits(x))) {
             return Err(self.failed(SaveErrorKind::Coordinate { vertex, position: own[vertex] }));
         }
-        let first = self.vertices as i64 - vertices.start as i64;
         self.vertices += own.len() as u64;
-        self.triangles += triangles.len() as u64;
+        self.triangles += chunk.triangle_count() as u64;
         let limit = u64::from(u32::MAX);
         if self.vertices > limit || matches!(self.body, Body::Stl(_)) && self.triangles > limit {
             return Err(self.failed(SaveErrorKind::TooManyTriangles));
         }
         let written = match &mut self.body {
-            Body::Ply([body, faces]) => {
-                let number = |v: u32| (first + i64::from(v)) as u32;
-                let numbered = mesh.triangles[triangles].iter().map(|t| t.map(number));
-                ply::write_vertices(own, self.coordinates, body)
-                    .and_then(|()| ply::write_faces(numbered, faces))
-            }
-            Body::Stl(file) => stl::write_triangles(triangles.map(|t| mesh.corners(t)), file),
+            Body::Ply([body, faces]) => ply::write_vertices(own, self.coordinates, body)
+                .and_then(|()| ply::write_faces(chunk.triangles().map(|t| t.map(|v| v as u32)), faces)),
+            Body::Stl(file) => stl::write_triangles(chunk.corners(), file),
         };
         written.map_err(|e| self.failed(SaveErrorKind::Write(e)))
     }

@@ -1,16 +1,16 @@
 //! Tiles: files that hold a share of a result each, and what joins them needs to know.
 
+use crate::quantity::TileIndex;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The share of a tile, and the work that it is a share of.
+/// The identity of a tile: its number, and the offset that it is a share of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tile {
-    /// Number of the tile, from 1.
-    pub number: u32,
-    /// Number of tiles.
-    pub of: u32,
-    /// Identifies the input and the settings: tiles with different ones do not belong together.
+    /// The number of the tile, and that of all tiles.
+    pub index: TileIndex,
+    /// A number made of the input and the settings ([`job`](crate::job)): tiles with different ones
+    /// do not belong together.
     pub job: u64,
 }
 
@@ -69,7 +69,12 @@ pub enum MergeErrorKind {
 impl Tile {
     /// The text in a file, from which it is read again; `note` is what else must be known of the file, without commas.
     pub(crate) fn text(&self, note: &str) -> String {
-        format!("exocarp tile {} of {}, {note}, job {:016x}", self.number, self.of, self.job)
+        format!(
+            "exocarp tile {} of {}, {note}, job {:016x}",
+            self.index.index(),
+            self.index.count(),
+            self.job
+        )
     }
 
     /// A tile and its note from the text in a file.
@@ -79,24 +84,25 @@ impl Tile {
         let (of, rest) = rest.split_once(", ")?;
         let (note, job) = rest.split_once(", job ")?;
         let job = u64::from_str_radix(job, 16).ok()?;
-        let tile = Tile { number: number.parse().ok()?, of: of.parse().ok()?, job };
-        ((1..=tile.of).contains(&tile.number)).then_some((tile, note))
+        let index = TileIndex::new(number.parse().ok()?, of.parse().ok()?)?;
+        Some((Tile { index, job }, note))
     }
 }
 
 /// Checks that tiles in the order of their numbers are all those of one work, each once.
 pub(crate) fn check_complete(tiles: &[(&Path, Tile)]) -> Result<(), MergeError> {
     let failed = |path: &Path, kind| Err(MergeError { path: path.to_path_buf(), kind });
-    let Some(&(first, Tile { of, job, .. })) = tiles.first() else {
+    let Some(&(first, Tile { index, job })) = tiles.first() else {
         return failed(Path::new(""), MergeErrorKind::Missing { number: 1, of: 1 });
     };
-    if let Some(other) = tiles.iter().find(|(_, tile)| (tile.of, tile.job) != (of, job)) {
+    let of = index.count();
+    if let Some(other) = tiles.iter().find(|(_, tile)| (tile.index.count(), tile.job) != (of, job)) {
         return failed(other.0, MergeErrorKind::OtherJob);
     }
-    if let Some(pair) = tiles.windows(2).find(|pair| pair[0].1.number == pair[1].1.number) {
-        return failed(pair[1].0, MergeErrorKind::Twice(pair[1].1.number));
+    if let Some(pair) = tiles.windows(2).find(|pair| pair[0].1.index == pair[1].1.index) {
+        return failed(pair[1].0, MergeErrorKind::Twice(pair[1].1.index.index()));
     }
-    match (1..=of).find(|n| !tiles.iter().any(|(_, tile)| tile.number == *n)) {
+    match (1..=of).find(|n| !tiles.iter().any(|(_, tile)| tile.index.index() == *n)) {
         Some(number) => failed(first, MergeErrorKind::Missing { number, of }),
         None => Ok(()),
     }

@@ -1,5 +1,6 @@
 //! Triangle meshes: the type, its clean-up, its topology, its measures, and generated models.
 
+mod chunk;
 mod clean;
 mod degenerate;
 pub mod measure;
@@ -9,6 +10,7 @@ mod equal;
 mod tri_mesh;
 mod usable;
 
+pub use chunk::MeshChunk;
 pub use clean::{CleanReport, clean, weld};
 pub use topology::{Defects, Topology};
 pub use tri_mesh::TriMesh;

@@ -1,12 +1,13 @@
 //! Why an offset cannot be made, told before the work starts where that is possible.
 
 use super::memory::MemoryError;
-use super::settings::{SettingsError, SignMode};
+use super::settings::{OpenInput, SettingsError};
 use crate::band::BandSettings;
-use crate::contour::{ContourError, Precision};
+use crate::contour::ContourError;
 use crate::distance::{SignedDistance, largest_depth};
 use crate::edge::TooManyEdges;
 use crate::mesh::{MeshError, Topology, TriMesh};
+use crate::quantity::Precision;
 use crate::run::{Cancelled, RunSettings};
 use crate::vdb::VdbError;
 
@@ -136,11 +137,15 @@ pub(super) fn check_mesh(mesh: &TriMesh) -> Result<(), InputError> {
 }
 
 /// Checks that the mesh is the boundary of a solid, where the sign needs that.
-pub(super) fn check_input(mesh: &TriMesh, topology: &Topology, sign: SignMode) -> Result<(), InputError> {
+pub(super) fn check_input(
+    mesh: &TriMesh,
+    topology: &Topology,
+    open_input: OpenInput,
+) -> Result<(), InputError> {
     if topology.defects().non_manifold_edges > 0 && is_doubled(mesh) {
         return Err(InputError::Doubled { triangles: mesh.triangles.len() });
     }
-    if sign == SignMode::Pseudonormal {
+    if open_input == OpenInput::Accept {
         return Ok(());
     }
     let ends = |edge: [u32; 2]| edge.map(|v| mesh.vertices[v as usize]);

@@ -4,8 +4,9 @@
 //! whatever the fields and types are called in the code. So each setting goes in under a name and as bytes
 //! that are written down here.
 
-use super::{Length, OffsetSettings, Precision, SignMode, Tolerance, VoxelSize};
+use super::{OffsetSettings, OpenInput};
 use crate::mesh::TriMesh;
+use crate::quantity::{Length, Precision, Tolerance, VoxelSize};
 
 /// Identifies the offset of `mesh` with these settings, as this version of exocarp makes it: two offsets with
 /// the same number are the same to the last bit.
@@ -20,20 +21,18 @@ fn of_version(version: &str, mesh: &TriMesh, settings: &OffsetSettings) -> u64 {
     let OffsetSettings {
         distance,
         voxel,
-        sign,
-        half_width,
-        keep_band: _,
-        keep_closest: _,
+        open_input,
+        band: _,
         precision,
         tolerance,
-        resolve,
+        max_halvings,
         max_memory: _,
     } = settings;
     let mut hash = Fnv1a::default();
     hash.text("version", version);
     match distance {
         Length::Units(d) => hash.number("distance in units", *d),
-        Length::OfDiagonal(share) => hash.number("distance of diagonal", *share),
+        Length::DiagonalFraction(share) => hash.number("distance of diagonal", *share),
     }
     match voxel {
         VoxelSize::Units(h) => hash.number("voxel in units", *h),
@@ -41,12 +40,12 @@ fn of_version(version: &str, mesh: &TriMesh, settings: &OffsetSettings) -> u64 {
     }
     hash.text(
         "sign",
-        match sign {
-            SignMode::Closed => "closed",
-            SignMode::Pseudonormal => "pseudonormal",
+        match open_input {
+            OpenInput::Refuse => "closed",
+            OpenInput::Accept => "pseudonormal",
         },
     );
-    hash.number("half width", *half_width);
+    hash.number("half width", settings.half_width());
     hash.text(
         "precision",
         match precision {
@@ -59,7 +58,7 @@ fn of_version(version: &str, mesh: &TriMesh, settings: &OffsetSettings) -> u64 {
         Some(Tolerance::Units(t)) => hash.number("tolerance in units", *t),
         Some(Tolerance::Voxels(t)) => hash.number("tolerance in voxels", *t),
     }
-    hash.integer("resolve", u64::from(*resolve));
+    hash.integer("resolve", u64::from(*max_halvings));
     hash.integer("vertices", mesh.vertices.len() as u64);
     mesh.vertices.as_flattened().iter().for_each(|x| hash.bytes(&x.to_bits().to_le_bytes()));
     hash.integer("triangles", mesh.triangles.len() as u64);
@@ -111,6 +110,7 @@ impl Fnv1a {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::offset::BandOptions;
     use std::collections::BTreeSet;
 
     fn triangle() -> TriMesh {
@@ -136,7 +136,7 @@ mod tests {
     fn jobs_are_numbered_alike_by_every_compiler_and_release() {
         // Tiles carry these numbers: a change here means that tiles of before and after do not join.
         let settings = OffsetSettings {
-            distance: Length::OfDiagonal(0.02),
+            distance: Length::DiagonalFraction(0.02),
             voxel: VoxelSize::Resolution(512),
             tolerance: Some(Tolerance::Voxels(0.05)),
             ..OffsetSettings::default()
@@ -163,19 +163,20 @@ mod tests {
             job(&turned, &settings),
             of_version("0.0.9", &triangle(), &settings),
             with(&|s| s.distance = Length::Units(0.02)),
-            with(&|s| s.distance = Length::OfDiagonal(-0.02)),
+            with(&|s| s.distance = Length::DiagonalFraction(-0.02)),
             with(&|s| s.voxel = VoxelSize::Units(0.1)),
             with(&|s| s.voxel = VoxelSize::Resolution(257)),
-            with(&|s| s.sign = SignMode::Pseudonormal),
-            with(&|s| s.half_width = 3.0),
+            with(&|s| s.open_input = OpenInput::Accept),
+            with(&|s| s.band = Some(BandOptions::default())),
             with(&|s| s.precision = Precision::F64),
             with(&|s| s.tolerance = Some(Tolerance::Units(0.1))),
             with(&|s| s.tolerance = Some(Tolerance::Voxels(0.1))),
-            with(&|s| s.resolve = 1),
+            with(&|s| s.max_halvings = 1),
         ];
         assert_eq!(all.iter().collect::<BTreeSet<_>>().len(), all.len(), "{all:x?}");
-        let kept =
-            |s: &mut OffsetSettings| (s.max_memory, s.keep_band, s.keep_closest) = (Some(1), true, true);
+        let kept = |s: &mut OffsetSettings| {
+            (s.max_memory, s.band) = (Some(1), Some(BandOptions { half_width: 1.0, closest: true }));
+        };
         assert_eq!(with(&kept), all[0]);
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::band::Layers;
 use crate::lattice::{LEAF_DIM, Slab};
+use crate::quantity::TileIndex;
 
 /// The layers `start` to `end`, as a slab. The first and the last reach beyond all layers, so that everything
 /// has an owner.
@@ -14,10 +15,11 @@ fn slab(layers: &Layers, halo: i32, start: usize, end: usize) -> Slab {
     Slab::new(plane(start), plane(end), halo)
 }
 
-/// Slab `number`, from 1, of `count` slabs with about the same share of the surface each. Where there are
-/// fewer layers than slabs, some own nothing; where there are none, the first one owns everything: the sign
-/// may still jump where no surface is.
-pub(super) fn share(layers: &Layers, halo: i32, number: u32, count: u32) -> Slab {
+/// Returns the slab of one of several tiles with about the same share of the surface each. Where
+/// there are fewer layers than tiles, some own nothing; where there are none, the first one owns
+/// everything: the sign may still jump where no surface is.
+pub(super) fn share(layers: &Layers, halo: i32, tile: TileIndex) -> Slab {
+    let (number, count) = (tile.index(), tile.count());
     if layers.leaves.is_empty() {
         return if number == 1 { Slab::WHOLE } else { Slab::new(i32::MAX, i32::MAX, halo) };
     }
@@ -84,7 +86,7 @@ mod tests {
     }
 
     fn in_shares(layers: &Layers, halo: i32, count: u32) -> Vec<Slab> {
-        (1..=count).map(|number| share(layers, halo, number, count)).collect()
+        (1..=count).map(|number| share(layers, halo, TileIndex::new(number, count).unwrap())).collect()
     }
 
     #[test]
@@ -107,7 +109,11 @@ mod tests {
         // As many as can be numbered, of as many leaves as there can be.
         let many = layers(&[1 << 40, 1 << 40]);
         for (number, leaves) in [(1, 0), (1 << 30, 1 << 40), (u32::MAX, 0)] {
-            assert_eq!(owned(&many, &[share(&many, 16, number, u32::MAX)]), [leaves], "{number}");
+            assert_eq!(
+                owned(&many, &[share(&many, 16, TileIndex::new(number, u32::MAX).unwrap())]),
+                [leaves],
+                "{number}"
+            );
         }
     }
 

@@ -1,93 +1,93 @@
-//! What to make: distance, voxel size, sign mode.
+//! The settings of an offset, and their values in model units for a mesh.
 
 use crate::band::BandSettings;
-use crate::contour::{ContourSettings, Precision};
+use crate::contour::ContourSettings;
 use crate::geom::aabb::Aabb;
 use crate::lattice::{Lattice, Slab};
 use crate::mesh::{LENGTHS, TriMesh};
+use crate::quantity::{Length, MAX_LATTICE_INDEX, Precision, Tolerance, VoxelSize};
 use glam::DVec3;
 
-/// A length given by a user.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Length {
-    /// In model units.
-    Units(f64),
-    /// As a fraction of the diagonal of the input's bounding box: 0.02 is two percent.
-    OfDiagonal(f64),
-}
-
-/// How fine the lattice is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum VoxelSize {
-    /// The width h of a cell, in model units.
-    Units(f64),
-    /// h = (longest side of the input's bounding box + 2 max(r, 0)) / N.
-    Resolution(u32),
-}
-
-/// How far the result may be from the true offset surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Tolerance {
-    /// In model units.
-    Units(f64),
-    /// In voxels.
-    Voxels(f64),
-}
-
-/// Where the sign of the distance comes from.
+/// The answer to an input that is not the boundary of a solid.
+///
+/// The sign of the distance comes from angle-weighted pseudonormals either way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum SignMode {
-    /// By the angle-weighted pseudonormal; the input must be closed and consistently oriented.
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum OpenInput {
+    /// Inputs that are not closed and consistently oriented are refused.
     #[default]
-    Closed,
-    /// By the angle-weighted pseudonormal, whatever the input is. Where the sign jumps far from the
-    /// surface, the result is closed there.
-    Pseudonormal,
+    Refuse,
+    /// Inputs are taken as they are. Where the sign jumps far from the surface, the result is
+    /// closed there.
+    Accept,
 }
 
-/// What to make.
+/// The part of the narrow band that is kept in OpenVDB grids.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct BandOptions {
+    /// Half-width of the band in voxels, 1 to 1000. OpenVDB's level-set tools expect 3.
+    pub half_width: f64,
+    /// Whether the closest triangle of each voxel is kept, too: a second grid, of integers, which
+    /// many programs cannot read.
+    pub closest: bool,
+}
+
+impl Default for BandOptions {
+    fn default() -> Self {
+        BandOptions { half_width: 3.0, closest: false }
+    }
+}
+
+/// The geometry of an offset: distance, fineness, and what is made.
+///
+/// ```
+/// use exocarp::{Length, OffsetSettings, VoxelSize};
+///
+/// let shrunk = OffsetSettings {
+///     distance: Length::DiagonalFraction(-0.02),
+///     voxel: VoxelSize::Resolution(512),
+///     ..OffsetSettings::default()
+/// };
+/// assert!(shrunk.validate().is_ok());
+/// ```
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct OffsetSettings {
     /// Signed distance r: positive grows, negative shrinks, 0 remeshes.
     pub distance: Length,
     /// Voxel size.
     pub voxel: VoxelSize,
-    /// Sign mode.
-    pub sign: SignMode,
-    /// Half-width of the stored band in voxels, 1 to 1000. Contouring needs 1, a level set for other
-    /// programs 3.
-    pub half_width: f64,
-    /// Keep the narrow band, in OpenVDB grids. Without, it is gone when the mesh is done.
-    pub keep_band: bool,
-    /// Keep with the band, where it is kept, the closest triangle of each of its voxels: a second grid, of
-    /// integers, which many programs cannot read. Without, no closest triangles are stored.
-    pub keep_closest: bool,
+    /// The answer to an input that is not the boundary of a solid.
+    pub open_input: OpenInput,
+    /// The part of the narrow band that is kept beside the mesh. Without it the band is as narrow
+    /// as contouring needs, 1 voxel on either side, and is gone when the mesh is done.
+    pub band: Option<BandOptions>,
     /// Coordinates of the result.
     pub precision: Precision,
-    /// Refine the result until it is this near to the true offset surface; `None` leaves it as the lattice
-    /// gives it. What could not be reached is counted in
-    /// [`ContourStatistics::beyond_tolerance`](crate::contour::ContourStatistics).
+    /// The distance from the true offset surface to which the result is refined; `None` leaves it
+    /// as the lattice gives it. What could not be reached is counted in
+    /// [`ContourStatistics::beyond_tolerance`](crate::ContourStatistics).
     pub tolerance: Option<Tolerance>,
-    /// How often the voxel size may be halved where the lattice does not see all of the surface
-    /// ([`MissedFeatures`](crate::subvoxel::MissedFeatures)); 0 leaves it as it is. The whole lattice is refined.
-    pub resolve: u32,
-    /// Refuse the lattice when the whole program would need more than about this many bytes; `None` for the memory
-    /// that the system has available.
+    /// The number of times that the voxel size may be halved where the lattice does not see all of
+    /// the surface ([`MissedFeatures`](crate::MissedFeatures)); 0 leaves it as it is. The whole lattice is refined.
+    pub max_halvings: u32,
+    /// The most memory in bytes that the whole program may need, about; more is refused. `None`
+    /// for the memory that the system has available.
     pub max_memory: Option<u64>,
 }
 
 impl Default for OffsetSettings {
     fn default() -> Self {
         OffsetSettings {
-            distance: Length::OfDiagonal(0.02),
+            distance: Length::DiagonalFraction(0.02),
             voxel: VoxelSize::Resolution(256),
-            sign: SignMode::Closed,
-            half_width: 1.0,
-            keep_band: false,
-            keep_closest: false,
+            open_input: OpenInput::Refuse,
+            band: None,
             precision: Precision::F32,
             tolerance: None,
-            resolve: 0,
+            max_halvings: 0,
             max_memory: None,
         }
     }
@@ -145,9 +145,6 @@ pub enum SettingsError {
     },
 }
 
-/// The largest lattice index: a leaf or a bounding box beyond it must still fit into an i32.
-const LARGEST_INDEX: f64 = (1 << 30) as f64;
-
 /// Steps of 64-bit coordinates that a tolerance spans at least: distances are computed in as many bits, and
 /// lose some. Below, all triangles are split as often as they may be, plane ones too, and none comes nearer.
 const STEPS_OF_F64: f64 = 8.0;
@@ -158,7 +155,7 @@ impl OffsetSettings {
     /// # Errors
     /// The first setting that makes no sense.
     pub fn validate(&self) -> Result<(), SettingsError> {
-        let (Length::Units(distance) | Length::OfDiagonal(distance)) = self.distance;
+        let (Length::Units(distance) | Length::DiagonalFraction(distance)) = self.distance;
         if !distance.is_finite() {
             return Err(SettingsError::Distance(distance));
         }
@@ -172,22 +169,28 @@ impl OffsetSettings {
         {
             return Err(SettingsError::Tolerance(t));
         }
-        if !(1.0..=1000.0).contains(&self.half_width) {
-            return Err(SettingsError::HalfWidth(self.half_width));
+        let half_width = self.half_width();
+        if !(1.0..=1000.0).contains(&half_width) {
+            return Err(SettingsError::HalfWidth(half_width));
         }
         Ok(())
     }
 
-    /// The settings in model units for `mesh`.
+    /// Returns the half-width of the band in voxels: contouring needs 1.
+    pub(crate) fn half_width(&self) -> f64 {
+        self.band.map_or(1.0, |band| band.half_width)
+    }
+
+    /// Returns the settings in model units for `mesh`.
     ///
     /// # Errors
     /// The first setting that makes no sense, or not for this mesh.
-    pub fn resolve(&self, mesh: &TriMesh) -> Result<BandSettings, SettingsError> {
+    pub(crate) fn in_model_units(&self, mesh: &TriMesh) -> Result<BandSettings, SettingsError> {
         self.validate()?;
         let bounds = Aabb::around(mesh.vertices.iter().map(|&v| DVec3::from(v)));
         let r = match self.distance {
             Length::Units(r) => r,
-            Length::OfDiagonal(fraction) => fraction * bounds.diagonal(),
+            Length::DiagonalFraction(fraction) => fraction * bounds.diagonal(),
         };
         if !r.is_finite() {
             return Err(SettingsError::Distance(r));
@@ -200,7 +203,7 @@ impl OffsetSettings {
             return Err(SettingsError::Voxel(voxel));
         }
         let band =
-            BandSettings { lattice: Lattice { voxel }, r, half_width: self.half_width, slab: Slab::WHOLE };
+            BandSettings { lattice: Lattice { voxel }, r, half_width: self.half_width(), slab: Slab::WHOLE };
         self.check_range(mesh, &band)?;
         Ok(band)
     }
@@ -209,15 +212,16 @@ impl OffsetSettings {
     pub(super) fn check_range(&self, mesh: &TriMesh, band: &BandSettings) -> Result<(), SettingsError> {
         let bounds = Aabb::around(mesh.vertices.iter().map(|&v| DVec3::from(v)));
         let (voxel, r) = (band.lattice.voxel, band.r);
-        let farthest = bounds.lo.abs().max(bounds.hi.abs()).max_element() + r.abs() + self.half_width * voxel;
+        let farthest =
+            bounds.lo.abs().max(bounds.hi.abs()).max_element() + r.abs() + self.half_width() * voxel;
         if !LENGTHS.contains(&voxel) {
             return Err(SettingsError::Length { what: "voxel size", length: voxel });
         }
         if farthest > *LENGTHS.end() {
             return Err(SettingsError::Length { what: "distance", length: r.abs() });
         }
-        if farthest / voxel > LARGEST_INDEX {
-            return Err(SettingsError::Range { voxel, smallest: farthest / LARGEST_INDEX });
+        if farthest / voxel > MAX_LATTICE_INDEX {
+            return Err(SettingsError::Range { voxel, smallest: farthest / MAX_LATTICE_INDEX });
         }
         let (bits, step) = match self.precision {
             Precision::F32 => (32, f64::from(f32::EPSILON)),

@@ -16,7 +16,7 @@ use std::time::Instant;
 
 /// The contour of a slab, and what it lacks; `None` when the surface passes nowhere near the slab. What the slab owns
 /// is added to `stored` and to the statistics.
-pub(super) fn on_slab(
+pub(super) fn run_stages(
     distance: &SignedDistance,
     settings: &OffsetSettings,
     band_settings: &BandSettings,

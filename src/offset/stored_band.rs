@@ -1,6 +1,6 @@
 //! The band in OpenVDB, as it grows.
 
-use super::OffsetSettings;
+use super::{BandOptions, OffsetSettings};
 use crate::band::narrow_band::{BandStore, StoredPart};
 use crate::band::{BandSettings, LeafBatch};
 use crate::filter::Block;
@@ -10,10 +10,10 @@ use crate::vdb::{Band, ClosestGrid, SurfaceGrid, VdbError};
 impl StoredPart {
     /// Returns the part that is stored by these settings.
     pub(super) fn by(settings: &OffsetSettings) -> StoredPart {
-        match (settings.keep_band, settings.keep_closest) {
-            (false, _) => StoredPart::Nothing,
-            (true, false) => StoredPart::LevelSet,
-            (true, true) => StoredPart::WithClosest,
+        match settings.band {
+            None => StoredPart::Nothing,
+            Some(BandOptions { closest: false, .. }) => StoredPart::LevelSet,
+            Some(BandOptions { closest: true, .. }) => StoredPart::WithClosest,
         }
     }
 }
@@ -27,10 +27,10 @@ pub(crate) struct StoredBand {
 }
 
 impl StoredBand {
-    pub(crate) fn new(band: &BandSettings, settings: &OffsetSettings) -> Result<StoredBand, VdbError> {
+    pub(crate) fn new(band: &BandSettings, options: &BandOptions) -> Result<StoredBand, VdbError> {
         Ok(StoredBand {
             surface: SurfaceGrid::new(band.lattice, band.half_width)?,
-            closest: settings.keep_closest.then(|| ClosestGrid::new(band.lattice)).transpose()?,
+            closest: options.closest.then(|| ClosestGrid::new(band.lattice)).transpose()?,
         })
     }
 

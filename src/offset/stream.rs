@@ -1,123 +1,144 @@
-//! An offset slab by slab: in less memory than the whole takes, or one share of it on a machine of its own.
+//! An offset slab by slab: in less memory than the whole takes, or one share of it on a machine of
+//! its own.
 
-use super::error::EmptyResult;
 use super::memory::{MemoryError, check_countable, leaves_within};
-use super::stages::on_slab;
+use super::partition;
+use super::pipeline::Prepared;
+use super::stages::run_stages;
 use super::stored_band::StoredBand;
-use super::voxel_refinement::until_seen;
-use super::{OffsetError, OffsetResult, OffsetSettings, OffsetStatistics, Prepared};
+use super::voxel_refinement::refine_until_resolved;
+use super::{BandOptions, EmptyResult, OffsetError, OffsetSettings, OffsetStatistics, StreamResult};
 use crate::band::{BandSettings, count_layers};
-use crate::contour::{SlabContour, halo};
+use crate::contour::halo;
+use crate::io::MeshStream;
 use crate::lattice::Slab;
-use crate::mesh::TriMesh;
+use crate::mesh::{MeshChunk, TriMesh};
+use crate::quantity::TileIndex;
 use crate::run::{Cancelled, RunSettings};
 use crate::subvoxel::{MissedCandidates, MissedFeatures};
 use std::time::Instant;
 
-/// How the lattice is cut.
+/// The way in which the lattice is divided into slabs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Cut {
-    /// Into slabs that are worked off one after the other, each within about this many bytes.
+pub enum Partition {
+    /// Slabs that are worked off one after the other, each within about this many bytes.
     Memory(u64),
-    /// Into `of` tiles with about the same share of the surface each, of which tile `number`, 1 to `of`, is made.
-    Tile {
-        /// Which one.
-        number: u32,
-        /// How many there are.
-        of: u32,
-    },
+    /// Tiles with about the same share of the surface each, of which this one is made.
+    Tile(TileIndex),
 }
 
 /// The error of a receiver of a streamed mesh.
 pub type SinkError = Box<dyn std::error::Error + Send + Sync>;
 
-/// Takes the pieces of the result of [`offset_in_slabs`], in their order.
-pub trait PieceSink {
-    /// Forgets all pieces: they come again on a finer lattice.
+/// A receiver of the chunks of a streamed mesh, in their order.
+pub trait MeshSink {
+    /// Forgets all chunks: they come again on a finer lattice. Called once before the first chunk,
+    /// too.
     ///
     /// # Errors
-    /// What ends the run.
+    /// Whatever ends the run.
     fn restart(&mut self) -> Result<(), SinkError>;
 
-    /// Takes the next piece. Its vertices and triangles follow those of the piece before.
+    /// Takes the next chunk. Its vertices and triangles follow those of the chunk before.
     ///
     /// # Errors
-    /// What ends the run.
-    fn piece(&mut self, piece: &SlabContour) -> Result<(), SinkError>;
+    /// Whatever ends the run.
+    fn chunk(&mut self, chunk: &MeshChunk) -> Result<(), SinkError>;
 }
 
-/// The same as [`offset`](super::offset()), in slabs. The pieces, one after the other, are the mesh that it returns; the
-/// mesh of the result stays empty. With a tile, the statistics and the band are the tile's.
+impl MeshSink for MeshStream {
+    fn restart(&mut self) -> Result<(), SinkError> {
+        Ok(self.clear()?)
+    }
+
+    fn chunk(&mut self, chunk: &MeshChunk) -> Result<(), SinkError> {
+        Ok(self.append(chunk)?)
+    }
+}
+
+/// Makes an offset in slabs, and hands its mesh to `sink` chunk by chunk.
+///
+/// The chunks, one after the other, are the mesh that [`offset`](super::offset()) returns. With a
+/// tile, the statistics and the band are the tile's.
 ///
 /// # Errors
-/// As [`offset`](super::offset()); what `sink` returns; [`OffsetError::Memory`] when no slab is thin enough for the memory. A
-/// tile that the surface does not pass is no error.
-///
-/// # Panics
-/// When a tile's number is not one of its tiles'.
-pub fn offset_in_slabs(
+/// As [`offset`](super::offset()); [`OffsetError::Sink`] when `sink` fails;
+/// [`OffsetError::Memory`] when no slab is thin enough for the memory. A tile that the surface does
+/// not pass is no error.
+pub fn offset_streamed(
     mesh: &TriMesh,
     settings: &OffsetSettings,
-    cut: Cut,
-    sink: &mut dyn PieceSink,
+    partition: Partition,
+    sink: &mut dyn MeshSink,
     run: &RunSettings,
-) -> Result<OffsetResult, OffsetError> {
-    if let Cut::Tile { number, of } = cut {
-        assert!((1..=of).contains(&number), "there is no tile {number} of {of}");
-    }
+) -> Result<StreamResult, OffsetError> {
     Prepared::with(mesh, settings, run, |prepared| {
         let Prepared { distance, settings, run, .. } = *prepared;
-        let on_lattice = |band_settings: &BandSettings, times| -> Result<OffsetResult, OffsetError> {
+        let on_lattice = |band_settings: &BandSettings, times| {
             sink.restart().map_err(sink_error)?;
             let mut statistics = OffsetStatistics::new(band_settings, times);
-            let stored = || StoredBand::new(band_settings, settings);
-            let mut stored = settings.keep_band.then(stored).transpose()?;
+            let stored = |options: &BandOptions| StoredBand::new(band_settings, options);
+            let mut stored = settings.band.as_ref().map(stored).transpose()?;
             let started = Instant::now();
-            let slabs = cut_slabs(prepared, band_settings, cut)?;
+            let slabs = slabs(prepared, band_settings, partition)?;
             statistics.times.band += started.elapsed().as_secs_f64();
             let mut lost = MissedCandidates::default();
             let mut is_empty = true;
+            let mut first_vertex = 0;
             for &slab in &slabs {
                 let band_settings = BandSettings { slab, ..*band_settings };
                 let done =
-                    on_slab(distance, settings, &band_settings, stored.as_mut(), &mut statistics, run)?;
+                    run_stages(distance, settings, &band_settings, stored.as_mut(), &mut statistics, run)?;
                 if let Some((contour, of_slab)) = done {
                     is_empty &= contour.triangles.is_empty();
                     lost.append(of_slab);
-                    sink.piece(&contour).map_err(sink_error)?;
+                    let (vertices, triangles) = (contour.vertices, contour.triangles);
+                    let next = first_vertex + vertices.len() as u64;
+                    let first = match partition {
+                        Partition::Memory(_) => first_vertex,
+                        Partition::Tile(_) => vertices.start as u64,
+                    };
+                    let chunk = MeshChunk::new(&contour.mesh, vertices, triangles, first);
+                    sink.chunk(&chunk).map_err(sink_error)?;
+                    first_vertex = next;
                 }
             }
-            if is_empty && matches!(cut, Cut::Memory(_)) {
+            if is_empty && matches!(partition, Partition::Memory(_)) {
                 return Err(EmptyResult::explain(distance, band_settings, run)?.into());
             }
             statistics.slabs = slabs.len();
             statistics.missed = MissedFeatures::new(lost);
             let band = stored.map(StoredBand::finish);
             statistics.set_memory(band.as_ref());
-            Ok(OffsetResult { mesh: TriMesh::default(), band, statistics })
+            Ok((band, statistics))
         };
-        until_seen(prepared, |_| true, on_lattice)
+        let (band, statistics) = refine_until_resolved(prepared, |_| true, on_lattice)?;
+        Ok(StreamResult { band, statistics })
     })
 }
 
-/// A receiver that was cancelled has cancelled the run.
+/// Converts the error of a sink: one that was cancelled has cancelled the run.
 fn sink_error(error: SinkError) -> OffsetError {
     if error.is::<Cancelled>() { OffsetError::Cancelled } else { OffsetError::Sink(error) }
 }
 
-/// The slabs to work off.
-fn cut_slabs(prepared: &Prepared<'_>, settings: &BandSettings, cut: Cut) -> Result<Vec<Slab>, OffsetError> {
+/// Returns the slabs to work off.
+fn slabs(
+    prepared: &Prepared<'_>,
+    settings: &BandSettings,
+    partition: Partition,
+) -> Result<Vec<Slab>, OffsetError> {
     let Prepared { distance, run, .. } = *prepared;
     check_countable(distance.mesh(), settings)?;
     let halo = halo(&prepared.settings.contour(settings.lattice));
     let layers = count_layers(distance, settings, run)?;
-    Ok(match cut {
-        Cut::Tile { number, of } => vec![super::partition::share(&layers, halo, number, of)],
+    Ok(match partition {
+        Partition::Tile(tile) => vec![partition::share(&layers, halo, tile)],
         // Nothing to see there, and that is said.
-        Cut::Memory(_) if layers.leaves.is_empty() => vec![Slab::WHOLE],
-        Cut::Memory(bytes) => {
+        Partition::Memory(_) if layers.leaves.is_empty() => vec![Slab::WHOLE],
+        Partition::Memory(bytes) => {
             let most = leaves_within(distance.mesh(), bytes);
-            super::partition::within(&layers, halo, most)
+            partition::within(&layers, halo, most)
                 .map_err(|leaves| MemoryError::of_slabs(distance.mesh(), settings, leaves, bytes))?
         }
     })

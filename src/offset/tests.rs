@@ -3,10 +3,13 @@
 use super::*;
 use crate::band::NearTriangles;
 use crate::band::narrow_band::{self, NarrowBand};
+use crate::distance::SignedDistance;
 use crate::edge::{EdgeNumbers, EdgeSettings, RootMethod, solve, solve_by};
 use crate::lattice::Slab;
+use crate::mesh::{Topology, TriMesh};
 use crate::mesh::{measure, shapes};
-use crate::run::Cancelled;
+use crate::quantity::{Length, Precision, Tolerance, VoxelSize};
+use crate::run::{Cancelled, RunSettings};
 use crate::verify::tests::audit::audit;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -76,7 +79,7 @@ fn crossings_lie_on_the_offset_surface_by_brute_force() {
     let topology = Topology::new(&mesh);
     let distance = SignedDistance::new(&mesh, &topology);
     for r in [0.11, -0.07, 0.0] {
-        let band_settings = settings(r, 0.08).resolve(&mesh).unwrap();
+        let band_settings = settings(r, 0.08).in_model_units(&mesh).unwrap();
         let NarrowBand { signs, near, .. } =
             narrow_band::build::<Cancelled>(&distance, &band_settings, None, &run(2)).unwrap();
         let numbers = EdgeNumbers::new(&signs).unwrap();
@@ -111,7 +114,7 @@ fn lists_give_the_roots_of_the_hierarchy() {
         let topology = Topology::new(&mesh);
         let distance = SignedDistance::new(&mesh, &topology);
         for r in [0.11, -0.07, 0.0] {
-            let band_settings = settings(r, voxel).resolve(&mesh).unwrap();
+            let band_settings = settings(r, voxel).in_model_units(&mesh).unwrap();
             let NarrowBand { signs, near, .. } =
                 narrow_band::build::<Cancelled>(&distance, &band_settings, None, &run(2)).unwrap();
             let numbers = EdgeNumbers::new(&signs).unwrap();
@@ -134,7 +137,7 @@ fn plain_bisection_finds_the_roots_of_the_hybrid_method() {
     let topology = Topology::new(&mesh);
     let distance = SignedDistance::new(&mesh, &topology);
     for r in [0.11, -0.07] {
-        let band_settings = settings(r, 0.05).resolve(&mesh).unwrap();
+        let band_settings = settings(r, 0.05).in_model_units(&mesh).unwrap();
         let NarrowBand { signs, near, .. } =
             narrow_band::build::<Cancelled>(&distance, &band_settings, None, &run(2)).unwrap();
         let numbers = EdgeNumbers::new(&signs).unwrap();
@@ -168,7 +171,7 @@ fn every_closed_model_gives_a_clean_mesh() {
         let mesh = (shape.make)(4);
         for fraction in [0.08, 0.01, 0.0, -0.01] {
             let settings = OffsetSettings {
-                distance: Length::OfDiagonal(fraction),
+                distance: Length::DiagonalFraction(fraction),
                 voxel: VoxelSize::Resolution(40),
                 ..OffsetSettings::default()
             };
@@ -245,7 +248,7 @@ fn an_open_mesh_goes_ahead_by_pseudonormals_and_is_closed_at_jumps() {
     mesh.triangles = kept;
     let mut jumps = 0;
     for r in [-0.1, 0.1, 0.0] {
-        let settings = OffsetSettings { sign: SignMode::Pseudonormal, ..settings(r, 0.05) };
+        let settings = OffsetSettings { open_input: OpenInput::Accept, ..settings(r, 0.05) };
         let result = offset(&mesh, &settings, &run(2)).unwrap();
         let audit = audit(&result.mesh);
         assert!(audit.is_sound(), "{r}: {audit:?}");
@@ -273,8 +276,8 @@ fn the_two_sides_of_a_sheet_have_no_inside() {
     let mut mesh = shapes::cube(2);
     let other_side: Vec<[u32; 3]> = mesh.triangles.iter().map(|&[a, b, c]| [c, b, a]).collect();
     mesh.triangles.extend(other_side);
-    for sign in [SignMode::Closed, SignMode::Pseudonormal] {
-        let error = offset(&mesh, &OffsetSettings { sign, ..settings(0.1, 0.1) }, &run(1)).unwrap_err();
+    for open_input in [OpenInput::Refuse, OpenInput::Accept] {
+        let error = offset(&mesh, &OffsetSettings { open_input, ..settings(0.1, 0.1) }, &run(1)).unwrap_err();
         assert!(matches!(error, OffsetError::Input(InputError::Doubled { .. })), "{error}");
     }
     // One side more is a solid again, though edges have three triangles.
@@ -306,7 +309,7 @@ fn settings_that_make_no_sense_are_refused() {
         settings(0.1, -1.0),
         settings(0.1, f64::INFINITY),
         settings(0.1, 1e-12),
-        OffsetSettings { half_width: 0.5, ..settings(0.1, 0.1) },
+        OffsetSettings { band: Some(BandOptions { half_width: 0.5, closest: false }), ..settings(0.1, 0.1) },
         OffsetSettings { voxel: VoxelSize::Resolution(0), ..settings(0.1, 0.1) },
     ] {
         let error = offset(&mesh, &wrong, &run(1)).unwrap_err();

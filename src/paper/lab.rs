@@ -7,7 +7,8 @@ use crate::band::narrow_band::{self, NarrowBand};
 use crate::band::{BandSettings, NearTriangles, SignField};
 use crate::distance::SignedDistance;
 use crate::edge::EdgeNumbers;
-use crate::offset::{Length, OffsetError, OffsetResult, OffsetSettings, VoxelSize, offset};
+use crate::offset::{OffsetError, OffsetResult, OffsetSettings, offset};
+use crate::quantity::{Length, VoxelSize};
 use crate::run::RunSettings;
 
 /// The settings and the run of a measurement.
@@ -38,9 +39,9 @@ impl Lab<'_> {
     /// The settings of an offset by a part of the diagonal.
     pub fn offset_settings(&self, model: &Model, fraction: f64, voxel: VoxelSize) -> OffsetSettings {
         OffsetSettings {
-            distance: Length::OfDiagonal(fraction),
+            distance: Length::DiagonalFraction(fraction),
             voxel,
-            sign: model.sign,
+            open_input: model.open_input,
             max_memory: self.settings.max_memory,
             ..OffsetSettings::default()
         }
@@ -52,7 +53,7 @@ impl Lab<'_> {
     /// they would hardly change.
     pub fn shared_grid(&self, model: &Model, largest: f64, resolution: u32) -> Result<VoxelSize, PaperError> {
         let fitted = self.offset_settings(model, largest, VoxelSize::Resolution(resolution));
-        Ok(VoxelSize::Units(fitted.resolve(&model.mesh)?.lattice.voxel))
+        Ok(VoxelSize::Units(fitted.in_model_units(&model.mesh)?.lattice.voxel))
     }
 
     /// The grid fitted to each offset.
@@ -87,7 +88,7 @@ impl Lab<'_> {
         fraction: f64,
         voxel: VoxelSize,
     ) -> Result<Option<Field>, PaperError> {
-        let settings = self.offset_settings(model, fraction, voxel).resolve(&model.mesh)?;
+        let settings = self.offset_settings(model, fraction, voxel).in_model_units(&model.mesh)?;
         let NarrowBand { signs, near, .. } =
             narrow_band::build::<PaperError>(distance, &settings, None, self.run)?;
         let numbers = self.run.install(|| EdgeNumbers::new(&signs))?;

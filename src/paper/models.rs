@@ -7,7 +7,7 @@
 use super::PaperError;
 use crate::io;
 use crate::mesh::{Topology, TriMesh, clean, shapes};
-use crate::offset::SignMode;
+use crate::offset::OpenInput;
 use crate::run::RunSettings;
 use std::path::PathBuf;
 
@@ -84,7 +84,7 @@ pub(super) struct Model {
     pub name: String,
     pub mesh: TriMesh,
     pub topology: Topology,
-    pub sign: SignMode,
+    pub open_input: OpenInput,
 }
 
 impl Model {
@@ -126,8 +126,8 @@ impl Model {
         let topology = run.install(|| Topology::new(&mesh));
         let defects = topology.defects();
         let solid = defects.first_boundary.is_none() && defects.first_misoriented.is_none();
-        let sign = if solid { SignMode::Closed } else { SignMode::Pseudonormal };
-        Ok(Model { name, mesh, topology, sign })
+        let open_input = if solid { OpenInput::Refuse } else { OpenInput::Accept };
+        Ok(Model { name, mesh, topology, open_input })
     }
 }
 
@@ -176,7 +176,7 @@ mod tests {
         let run = RunSettings::with_threads(2).unwrap();
         for model in PaperModel::ALL {
             let loaded = Model::load(model, &[], 1, &run).unwrap();
-            assert_eq!(loaded.sign, SignMode::Closed, "{}", model.name());
+            assert_eq!(loaded.open_input, OpenInput::Refuse, "{}", model.name());
             assert!(
                 (1_000..60_000).contains(&loaded.mesh.triangles.len()),
                 "{model:?} {}",

@@ -4,7 +4,7 @@ use super::PaperError;
 use super::lab::{Lab, PUBLISHED_MACHINE};
 use super::models::PaperModel;
 use super::report::{Cell, Report};
-use crate::offset::VoxelSize;
+use crate::quantity::VoxelSize;
 
 /// The offset of the table, as a part of the diagonal.
 const OFFSET: f64 = 0.02;

@@ -71,7 +71,7 @@ pub(super) fn measure(lab: &Lab) -> Result<Report, PaperError> {
         row.push(Cell::Part(1e3 * all[0] as f64 / 513f64.powi(3)));
         report.push(row);
 
-        let settings = lab.offset_settings(&model, fraction, grid).resolve(&model.mesh)?;
+        let settings = lab.offset_settings(&model, fraction, grid).in_model_units(&model.mesh)?;
         let count = |n, signed_distance, octree| {
             let side = BoxSide::PowerOfTwo(n);
             let filters = FilterSettings { side, signed_distance, octree, ..FilterSettings::default() };

@@ -7,7 +7,8 @@ use super::PaperError;
 use super::lab::Lab;
 use super::models::{Model, PaperModel};
 use super::report::{Cell, Report};
-use crate::offset::{Length, OffsetResult};
+use crate::offset::OffsetResult;
+use crate::quantity::Length;
 use crate::verify::{DistanceReport, VerifySettings, distance_error};
 
 /// A published row: offset, average and maximum error, both relative to the offset.

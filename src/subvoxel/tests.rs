@@ -1,7 +1,8 @@
 use super::*;
 use crate::distance::SignedDistance;
 use crate::mesh::{Topology, TriMesh, shapes};
-use crate::offset::{Length, OffsetResult, OffsetSettings, VoxelSize, offset};
+use crate::offset::{OffsetResult, OffsetSettings, offset};
+use crate::quantity::{Length, VoxelSize};
 use crate::run::RunSettings;
 
 const VOXEL: f64 = 0.1;
@@ -20,11 +21,11 @@ fn boxes(all: &[[[f64; 3]; 2]]) -> TriMesh {
     mesh
 }
 
-fn run(mesh: &TriMesh, r: f64, resolve: u32) -> OffsetResult {
+fn run(mesh: &TriMesh, r: f64, max_halvings: u32) -> OffsetResult {
     let settings = OffsetSettings {
         distance: Length::Units(r),
         voxel: VoxelSize::Units(VOXEL),
-        resolve,
+        max_halvings,
         ..OffsetSettings::default()
     };
     offset(mesh, &settings, &RunSettings::with_threads(2).unwrap()).unwrap()
@@ -141,7 +142,7 @@ fn threads_do_not_matter() {
 #[test]
 fn resolving_brings_it_back() {
     let mesh = slabs(0.43, 0.05);
-    let [coarse, fine] = [0, 3].map(|resolve| run(&mesh, 0.2, resolve));
+    let [coarse, fine] = [0, 3].map(|max_halvings| run(&mesh, 0.2, max_halvings));
     assert_eq!((coarse.statistics.halvings, coarse.statistics.missed.gaps), (0, 1));
     assert!((1..=3).contains(&fine.statistics.halvings), "{}", fine.statistics.halvings);
     assert_eq!(fine.statistics.missed, MissedFeatures::default());
@@ -157,12 +158,12 @@ fn resolving_finds_what_no_node_is_in() {
     let settings = OffsetSettings {
         distance: Length::Units(-0.2),
         voxel: VoxelSize::Units(VOXEL),
-        resolve: 3,
+        max_halvings: 3,
         ..OffsetSettings::default()
     };
     let run = RunSettings::with_threads(2).unwrap();
     let result = offset(&mesh, &settings, &run).unwrap();
     assert!(result.statistics.halvings > 0 && !result.mesh.triangles.is_empty());
-    let unresolved = OffsetSettings { resolve: 0, ..settings };
+    let unresolved = OffsetSettings { max_halvings: 0, ..settings };
     assert!(matches!(offset(&mesh, &unresolved, &run), Err(crate::offset::OffsetError::Empty(_))));
 }

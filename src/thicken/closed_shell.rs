@@ -4,7 +4,8 @@ use super::settings::ModelUnits;
 use super::{ThickenError, ThickenSettings, ThickenTimes};
 use crate::mesh::TriMesh;
 use crate::mesh::measure::signed_volume;
-use crate::offset::{EngineTimes, Length, OffsetError, OffsetSettings, VoxelSize, offset};
+use crate::offset::{EngineTimes, OffsetError, OffsetSettings, offset};
+use crate::quantity::{Length, VoxelSize};
 use crate::run::RunSettings;
 
 /// Joins the patch and its offset by the thickness, in opposite orientation (\[WC13\] Figure 13).

@@ -1,10 +1,9 @@
 //! Settings of a thickening: thickness, side, voxel size.
 
 use super::ThickenSettingsError;
-use crate::contour::Precision;
 use crate::geom::aabb::Aabb;
 use crate::mesh::{LENGTHS, TriMesh};
-use crate::offset::{Length, VoxelSize};
+use crate::quantity::{Length, MAX_LATTICE_INDEX, Precision, VoxelSize};
 use glam::DVec3;
 
 /// Side of the patch on which the solid lies.
@@ -63,7 +62,7 @@ pub struct ThickenSettings {
 impl Default for ThickenSettings {
     fn default() -> Self {
         ThickenSettings {
-            thickness: Length::OfDiagonal(0.02),
+            thickness: Length::DiagonalFraction(0.02),
             thickness_map: None,
             side: Side::Inner,
             voxel: None,
@@ -91,16 +90,13 @@ const DEFAULT_ROUNDS: u32 = 10;
 /// Default number of voxels per thickness: twice the minimum of \[WC13\] Remark 1.
 const VOXELS_PER_THICKNESS: f64 = 4.0;
 
-/// Largest lattice index. A leaf beyond it must still fit into an i32.
-const MAX_LATTICE_INDEX: f64 = (1 << 30) as f64;
-
 impl ThickenSettings {
     /// Checks what can be checked without a patch.
     ///
     /// # Errors
     /// The first setting that makes no sense.
     pub fn validate(&self) -> Result<(), ThickenSettingsError> {
-        let (Length::Units(thickness) | Length::OfDiagonal(thickness)) = self.thickness;
+        let (Length::Units(thickness) | Length::DiagonalFraction(thickness)) = self.thickness;
         check_thickness(thickness)?;
         match self.voxel {
             Some(VoxelSize::Units(h)) => check_voxel(h),
@@ -125,7 +121,7 @@ impl ThickenSettings {
                 [f64::min, f64::max].map(|f| map.iter().copied().reduce(f).unwrap_or(0.0))
             }
             (None, Length::Units(r)) => [r; 2],
-            (None, Length::OfDiagonal(fraction)) => [fraction * bounds.diagonal(); 2],
+            (None, Length::DiagonalFraction(fraction)) => [fraction * bounds.diagonal(); 2],
         };
         check_thickness(thinnest)?;
         let voxel = match self.voxel {

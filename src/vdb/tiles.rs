@@ -68,7 +68,7 @@ impl TileFile {
 /// When a file is no tile, is of another work, is there twice or not at all, or when reading or writing fails.
 pub fn merge_bands(tiles: &[PathBuf], output: &Path) -> Result<Band, VdbError> {
     let mut tiles: Vec<TileFile> = tiles.iter().map(|path| TileFile::open(path)).collect::<Result<_, _>>()?;
-    tiles.sort_by_key(|tile| tile.tile.number);
+    tiles.sort_by_key(|tile| tile.tile.index.index());
     check_complete(&tiles.iter().map(|t| (t.path.as_path(), t.tile)).collect::<Vec<_>>())?;
     let (first, others) = tiles.split_first().expect("complete tiles are not none");
     let mut whole = file::open_band(&first.path)?;

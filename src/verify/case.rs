@@ -8,7 +8,7 @@ use crate::distance::SignedDistance;
 use crate::geom::aabb::Aabb;
 use crate::geom::box_tree::BoxTree;
 use crate::mesh::{Topology, TriMesh, clean, measure};
-use crate::offset::Length;
+use crate::quantity::Length;
 use crate::run::RunSettings;
 use crate::ssvh::Ssvh;
 use glam::DVec3;
@@ -88,7 +88,7 @@ impl<'m> Case<'m> {
         let diagonal = Aabb::around(meshes.input.vertices.iter().map(|&v| DVec3::from(v))).diagonal();
         let r = match settings.distance {
             Length::Units(r) => r,
-            Length::OfDiagonal(fraction) => fraction * diagonal,
+            Length::DiagonalFraction(fraction) => fraction * diagonal,
         };
         if !r.is_finite() {
             return Err(VerifyError::Setting { name: "distance", range: "a finite number", value: r });

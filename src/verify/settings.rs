@@ -1,7 +1,7 @@
 //! What to judge by.
 
 use super::error::VerifyError;
-use crate::offset::Length;
+use crate::quantity::Length;
 
 /// The seed when none is given; any would do.
 pub const DEFAULT_SEED: u64 = 1;
@@ -49,7 +49,7 @@ pub enum Subject {
 impl Default for VerifySettings {
     fn default() -> Self {
         VerifySettings {
-            distance: Length::OfDiagonal(0.02),
+            distance: Length::DiagonalFraction(0.02),
             voxel: None,
             tolerance: None,
             samples: DEFAULT_SAMPLES,
@@ -70,7 +70,7 @@ impl VerifySettings {
     /// # Errors
     /// [`VerifyError::Setting`]: the first setting out of range.
     pub fn validate(&self) -> Result<(), VerifyError> {
-        let (Length::Units(distance) | Length::OfDiagonal(distance)) = self.distance;
+        let (Length::Units(distance) | Length::DiagonalFraction(distance)) = self.distance;
         let check = |ok: bool, name, range, value| match ok {
             true => Ok(()),
             false => Err(VerifyError::Setting { name, range, value }),

@@ -71,7 +71,7 @@ fn voxels_too_small_for_a_transform_stay_in_memory() {
 fn a_cancelled_run_stops_the_tests() {
     let token = CancelToken::default();
     token.cancel();
-    let error = SPHERE.band().surface.check_level_set(&run().cancelled_by(token)).unwrap_err();
+    let error = SPHERE.band().surface.check_level_set(&run().with_cancel(token)).unwrap_err();
     assert!(matches!(error, VdbError::Cancelled));
 }
 

@@ -4,7 +4,8 @@ use crate::python;
 use exocarp::geom::triangle::Triangle;
 use exocarp::lattice::{Ijk, LEAF_SIZE, Lattice};
 use exocarp::mesh::{TriMesh, shapes};
-use exocarp::offset::{Length, OffsetResult, OffsetSettings, VoxelSize, offset};
+use exocarp::offset::{BandOptions, OffsetResult, OffsetSettings, offset};
+use exocarp::quantity::{Length, VoxelSize};
 use exocarp::run::RunSettings;
 use exocarp::vdb::{VdbOptions, write};
 use std::fmt::Write as _;
@@ -13,8 +14,7 @@ fn level_set(mesh: &TriMesh, distance: f64, voxel: f64) -> OffsetResult {
     let settings = OffsetSettings {
         distance: Length::Units(distance),
         voxel: VoxelSize::Units(voxel),
-        half_width: 3.0,
-        keep_band: true,
+        band: Some(BandOptions::default()),
         ..OffsetSettings::default()
     };
     offset(mesh, &settings, &run()).unwrap()

@@ -3,7 +3,7 @@
 use super::*;
 use crate::compare::{Lost, Measurement, Method, PhaseTime};
 use crate::mesh::shapes;
-use crate::offset::Length;
+use crate::quantity::Length;
 use crate::verify::{VerifySettings, verify};
 
 fn comparison(mesh: &TriMesh, run: &RunSettings) -> Comparison {

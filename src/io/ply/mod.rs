@@ -14,11 +14,11 @@ use std::io::{BufReader, Read, Seek, Write};
 
 use ply_rs_bw::ply::{Encoding, PropertyType};
 
-use super::Coordinates;
 use super::error::{LoadErrorKind, ReadError, quote};
 use super::loaded::{Content, NonFinite};
 use super::polygon::PolygonMesh;
 use crate::mesh::TriMesh;
+use crate::quantity::Precision;
 use header::{COORDINATES, Header, WANTED};
 
 /// Reads a mesh from a file of `length` bytes.
@@ -191,11 +191,7 @@ impl Body {
 }
 
 /// Writes a mesh, binary and little-endian.
-pub(super) fn write(
-    mesh: &TriMesh,
-    coordinates: Coordinates,
-    writer: &mut impl Write,
-) -> std::io::Result<()> {
+pub(super) fn write(mesh: &TriMesh, coordinates: Precision, writer: &mut impl Write) -> std::io::Result<()> {
     let (vertices, triangles) = (mesh.vertices.len() as u64, mesh.triangles.len() as u64);
     writer.write_all(&header(vertices, triangles, coordinates, &[]))?;
     write_vertices(&mesh.vertices, coordinates, writer)?;
@@ -203,17 +199,12 @@ pub(super) fn write(
 }
 
 /// The header of a file that is written here, with further comments.
-pub(super) fn header(
-    vertices: u64,
-    triangles: u64,
-    coordinates: Coordinates,
-    comments: &[String],
-) -> Vec<u8> {
+pub(super) fn header(vertices: u64, triangles: u64, coordinates: Precision, comments: &[String]) -> Vec<u8> {
     // `int` is what most readers expect; it cannot name the upper half of all vertices.
     let index = if vertices <= i32::MAX as u64 { "int" } else { "uint" };
     let number = match coordinates {
-        Coordinates::F32 => "float",
-        Coordinates::F64 => "double",
+        Precision::F32 => "float",
+        Precision::F64 => "double",
     };
     let version = env!("CARGO_PKG_VERSION");
     let mut text = format!("ply\nformat binary_little_endian 1.0\ncomment written by exocarp {version}\n");
@@ -231,7 +222,7 @@ pub(super) fn header(
 /// Writes the vertices of a file with such a header.
 pub(super) fn write_vertices(
     vertices: &[[f64; 3]],
-    coordinates: Coordinates,
+    coordinates: Precision,
     writer: &mut impl Write,
 ) -> std::io::Result<()> {
     let mut bytes = Vec::with_capacity(8 * 3 * TOGETHER);
@@ -239,8 +230,8 @@ pub(super) fn write_vertices(
         bytes.clear();
         let numbers = some.as_flattened().iter();
         match coordinates {
-            Coordinates::F32 => bytes.extend(numbers.flat_map(|&x| (x as f32).to_le_bytes())),
-            Coordinates::F64 => bytes.extend(numbers.flat_map(|&x| x.to_le_bytes())),
+            Precision::F32 => bytes.extend(numbers.flat_map(|&x| (x as f32).to_le_bytes())),
+            Precision::F64 => bytes.extend(numbers.flat_map(|&x| x.to_le_bytes())),
         }
         writer.write_all(&bytes)?;
     }

@@ -16,14 +16,14 @@ fn files() -> Vec<(Format, Vec<u8>)> {
         endloop\nendfacet\nendsolid s\n";
     let obj = "v 0 0 0\nv 1 0 0 1\nv 1 1 0\nv 0 1 \\\n0\nf 1/1 2/1 3/1 4/1\nf -4 -3 -2\n";
     vec![
-        (Format::Obj, written(&mesh, Format::Obj, Coordinates::F32)),
+        (Format::Obj, written(&mesh, Format::Obj, Precision::F32)),
         (Format::Obj, obj.into()),
-        (Format::Off, written(&mesh, Format::Off, Coordinates::F32)),
-        (Format::Ply, written(&mesh, Format::Ply, Coordinates::F32)),
-        (Format::Ply, written(&mesh, Format::Ply, Coordinates::F64)),
+        (Format::Off, written(&mesh, Format::Off, Precision::F32)),
+        (Format::Ply, written(&mesh, Format::Ply, Precision::F32)),
+        (Format::Ply, written(&mesh, Format::Ply, Precision::F64)),
         (Format::Ply, ascii),
         (Format::Ply, ply_file("binary_big_endian", &elements, &big)),
-        (Format::Stl, written(&mesh, Format::Stl, Coordinates::F32)),
+        (Format::Stl, written(&mesh, Format::Stl, Precision::F32)),
         (Format::Stl, stl.into()),
     ]
 }
@@ -109,7 +109,7 @@ fn absurd_counts_do_not_allocate() {
     assert!(sentence(Format::Ply, ply).contains("vertex 8 (byte"));
     let ply = ply_file("binary_little_endian", &elements[1..], &[0xff; 100]);
     assert!(sentence(Format::Ply, ply).contains("the file ends before the end of this face"));
-    let mut stl = written(&tetrahedron(), Format::Stl, Coordinates::F32);
+    let mut stl = written(&tetrahedron(), Format::Stl, Precision::F32);
     stl[80..84].copy_from_slice(&most.to_le_bytes());
     assert_eq!(noted(Format::Stl, &stl).0.triangles.len(), 4);
     stl.pop();

@@ -67,12 +67,11 @@ fn files_of_another_format() {
     );
     assert!(says(Format::Ply, b"OFF\n3 1 0\n").contains("line 1: this is not PLY (it begins with \"OFF\""));
     assert!(says(Format::Stl, b"ply\nformat").contains("this is not STL (it begins with \"ply\\nformat\""));
-    let obj = written(&tetrahedron(), Format::Obj, Coordinates::F32).repeat(2);
+    let obj = written(&tetrahedron(), Format::Obj, Precision::F32).repeat(2);
     assert!(says(Format::Stl, &obj).contains("this is not STL (it begins with \"v 0 -0 0.3333333432674408"));
     assert!(says(Format::Off, b"solid x\n").contains("line 1: this is not OFF (it begins with \"solid\""));
     assert!(
-        says(Format::Off, &written(&tetrahedron(), Format::Stl, Coordinates::F32))
-            .contains("this is not OFF")
+        says(Format::Off, &written(&tetrahedron(), Format::Stl, Precision::F32)).contains("this is not OFF")
     );
     // Any text is OBJ as far as it goes.
     assert!(says(Format::Obj, b"OFF\n3 1 0\n").contains("the file has no triangles"));
@@ -120,13 +119,13 @@ fn coordinates_that_are_not_finite() {
         endfacet\nendsolid\n";
     check(Format::Stl, stl, &format!("model.stl, line 4: {}", what("\"inf\"")));
 
-    let mut stl = written(&tetrahedron(), Format::Stl, Coordinates::F32);
+    let mut stl = written(&tetrahedron(), Format::Stl, Precision::F32);
     for t in 1..4 {
         stl[84 + 50 * t + 12..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
     }
     stl[84 + 20..][..4].copy_from_slice(&f32::INFINITY.to_le_bytes());
     check(Format::Stl, stl, &format!("model.stl, triangle 0 (byte 84): {}", what("inf")));
-    let mut ply = written(&tetrahedron(), Format::Ply, Coordinates::F64);
+    let mut ply = written(&tetrahedron(), Format::Ply, Precision::F64);
     let body = ply.len() - 4 * 24 - 4 * 13;
     for v in 1..3 {
         ply[body + 24 * v..][..8].copy_from_slice(&f64::INFINITY.to_le_bytes());
@@ -153,7 +152,7 @@ fn vertex_numbers_out_of_range() {
         check(Format::Off, off(found), &format!("model.off, line 5: {}", what(found, "0 to 1")));
         check(Format::Ply, ply(found), &format!("model.ply, line 12: {}", what(found, "0 to 1")));
     }
-    let mut ply = written(&tetrahedron(), Format::Ply, Coordinates::F32);
+    let mut ply = written(&tetrahedron(), Format::Ply, Precision::F32);
     let length = ply.len();
     ply[length - 4..].copy_from_slice(&4i32.to_le_bytes());
     check(Format::Ply, ply, &format!("model.ply, face 3 (byte {length}): {}", what("4", "0 to 3")));
@@ -181,7 +180,7 @@ fn files_that_were_cut_off() {
         "ply\nformat ascii 1.0\nelement vertex 5\n",
         &format!("model.ply, line 4: the file ends before \"end_header\"; {end}"),
     );
-    let ply = written(&tetrahedron(), Format::Ply, Coordinates::F32);
+    let ply = written(&tetrahedron(), Format::Ply, Precision::F32);
     check(
         Format::Ply,
         &ply[..ply.len() - 1],
@@ -195,7 +194,7 @@ fn files_that_were_cut_off() {
         "solid\nfacet normal 0 0 1\nouter loop\n",
         &format!("model.stl, line 3: the file ends before \"vertex\" or \"endloop\"; {end}"),
     );
-    let stl = written(&tetrahedron(), Format::Stl, Coordinates::F32);
+    let stl = written(&tetrahedron(), Format::Stl, Precision::F32);
     check(
         Format::Stl,
         &stl[..200],
@@ -285,21 +284,21 @@ fn meshes_that_a_file_cannot_hold() {
     let directory = tempfile::tempdir().unwrap();
     let said = |mesh: &TriMesh, name: &str, coordinates| {
         let path = directory.path().join(name);
-        let error = save(mesh, &path, &SaveOptions { coordinates }).unwrap_err();
+        let error = save(mesh, &path, &SaveOptions { precision: coordinates }).unwrap_err();
         assert!(!path.exists());
         error.kind.to_string()
     };
     let mut mesh = tetrahedron();
-    assert!(said(&mesh, "a.txt", Coordinates::F32).starts_with("the extension \"txt\" is not known"));
+    assert!(said(&mesh, "a.txt", Precision::F32).starts_with("the extension \"txt\" is not known"));
     mesh.vertices[2][1] = 1e300;
     for name in ["a.ply", "a.stl"] {
-        let said = said(&mesh, name, Coordinates::F32);
+        let said = said(&mesh, name, Precision::F32);
         assert!(said.starts_with("vertex 2 at [-2.5, 1e300, 0.0] does not fit the number type"), "{said}");
     }
-    save(&mesh, &directory.path().join("b.ply"), &SaveOptions { coordinates: Coordinates::F64 }).unwrap();
+    save(&mesh, &directory.path().join("b.ply"), &SaveOptions { precision: Precision::F64 }).unwrap();
     mesh.vertices[2][1] = f64::NAN;
-    assert!(said(&mesh, "a.obj", Coordinates::F64).starts_with("vertex 2 at"));
+    assert!(said(&mesh, "a.obj", Precision::F64).starts_with("vertex 2 at"));
     mesh = tetrahedron();
     mesh.triangles[1][2] = 4;
-    assert!(said(&mesh, "a.off", Coordinates::F64).starts_with("triangle 1 names a vertex"));
+    assert!(said(&mesh, "a.off", Precision::F64).starts_with("triangle 1 names a vertex"));
 }

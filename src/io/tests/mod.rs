@@ -54,7 +54,7 @@ fn tetrahedron() -> TriMesh {
 }
 
 /// The content of the file that `mesh` is written to.
-fn written(mesh: &TriMesh, format: Format, coordinates: Coordinates) -> Vec<u8> {
+fn written(mesh: &TriMesh, format: Format, coordinates: Precision) -> Vec<u8> {
     let mut bytes = Vec::new();
     match format {
         Format::Obj => obj::write(mesh, coordinates, &mut bytes),

@@ -100,7 +100,7 @@ fn header_lines_without_a_keyword_are_skipped_where_the_body_fits() {
 
 #[test]
 fn header_lines_are_skipped_before_a_binary_body_of_the_right_size_only() {
-    let file = written(&tetrahedron(), Format::Ply, Coordinates::F32);
+    let file = written(&tetrahedron(), Format::Ply, Precision::F32);
     let file = [&b"ply\nMade by hand\n"[..], &file[4..]].concat();
     let (mesh, note) = noted(Format::Ply, &file);
     assert_eq!(mesh.triangles, tetrahedron().triangles);
@@ -121,7 +121,7 @@ fn the_end_of_a_solid_may_be_two_words() {
 
 #[test]
 fn the_size_of_a_binary_stl_file_says_how_many_triangles_it_has() {
-    let file = written(&tetrahedron(), Format::Stl, Coordinates::F32);
+    let file = written(&tetrahedron(), Format::Stl, Precision::F32);
     for said in [0u32, 1, 3, 5, 1000, u32::MAX] {
         let mut wrong = file.clone();
         wrong[80..84].copy_from_slice(&said.to_le_bytes());
@@ -135,7 +135,7 @@ fn the_size_of_a_binary_stl_file_says_how_many_triangles_it_has() {
 
 /// A binary file with `payload` behind each triangle, and its length as attributes.
 fn with_payload(mesh: &TriMesh, payload: &[u8]) -> Vec<u8> {
-    let file = written(mesh, Format::Stl, Coordinates::F32);
+    let file = written(mesh, Format::Stl, Precision::F32);
     let mut with = file[..84].to_vec();
     for record in file[84..].chunks(50) {
         with.extend_from_slice(&record[..48]);
@@ -148,13 +148,13 @@ fn with_payload(mesh: &TriMesh, payload: &[u8]) -> Vec<u8> {
 #[test]
 fn attributes_with_a_payload_are_stepped_over_where_they_fill_the_file() {
     let mesh = tetrahedron();
-    let plain = good(Format::Stl, written(&mesh, Format::Stl, Coordinates::F32));
+    let plain = good(Format::Stl, written(&mesh, Format::Stl, Precision::F32));
     // Also one that makes every other record look like a triangle more.
     for length in [1, 6, 50, 255] {
         let file = with_payload(&mesh, &vec![0x41; length]);
         assert_eq!(good(Format::Stl, &file), plain, "{length}");
         // Attributes that are no numbers of bytes: what is behind the last triangle is ignored.
-        let mut other = written(&mesh, Format::Stl, Coordinates::F32);
+        let mut other = written(&mesh, Format::Stl, Precision::F32);
         other.extend(vec![0x41; length]);
         if length != 50 {
             assert_eq!(good(Format::Stl, &other), plain, "{length}");
@@ -210,14 +210,14 @@ fn numbers_that_are_none_are_known_in_every_format() {
 #[test]
 fn binary_coordinates_that_are_not_finite_are_left_out() {
     let mesh = tetrahedron();
-    let mut stl = written(&mesh, Format::Stl, Coordinates::F32);
+    let mut stl = written(&mesh, Format::Stl, Precision::F32);
     stl[84 + 50 + 12..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
     let (found, note) = noted(Format::Stl, stl);
     assert_eq!(found.triangles, [[0, 1, 2], [5, 6, 7], [8, 9, 10]]);
     assert!(
         note.starts_with("model.stl, triangle 1 (byte 134): the coordinate NaN is not finite; 1 such vertex")
     );
-    for (coordinates, size) in [(Coordinates::F32, 4), (Coordinates::F64, 8)] {
+    for (coordinates, size) in [(Precision::F32, 4), (Precision::F64, 8)] {
         let mut ply = written(&mesh, Format::Ply, coordinates);
         let body = ply.len() - 4 * 3 * size - 4 * 13;
         // All exponent bits.

@@ -79,7 +79,7 @@ proptest! {
     #[test]
     fn single_precision_survives_every_format(mesh in meshes(finite_f32())) {
         for format in Format::ALL {
-            for coordinates in [Coordinates::F32, Coordinates::F64] {
+            for coordinates in [Precision::F32, Precision::F64] {
                 let again = good(format, written(&mesh, format, coordinates));
                 if format != Format::Stl {
                     prop_assert_eq!(&again.triangles, &mesh.triangles);
@@ -95,7 +95,7 @@ proptest! {
 
     #[test]
     fn text_is_the_same_number_to_readers_of_32_and_of_64_bits(x in finite_f64()) {
-        let rounded = Coordinates::F32.round(x);
+        let rounded = Precision::F32.round(x);
         prop_assume!(rounded.is_finite());
         for written in [x, rounded] {
             let mut bytes = Vec::new();
@@ -109,9 +109,9 @@ proptest! {
 
     #[test]
     fn every_format_has_the_same_32_bits(mesh in meshes(-1e30..1e30)) {
-        let expected = good(Format::Ply, written(&mesh, Format::Ply, Coordinates::F32));
+        let expected = good(Format::Ply, written(&mesh, Format::Ply, Precision::F32));
         for format in [Format::Obj, Format::Off] {
-            let found = good(format, written(&mesh, format, Coordinates::F32));
+            let found = good(format, written(&mesh, format, Precision::F32));
             prop_assert_eq!(&found, &expected, "{}", format);
         }
     }
@@ -119,7 +119,7 @@ proptest! {
     #[test]
     fn double_precision_survives_where_it_is_written(mesh in meshes(finite_f64())) {
         for format in [Format::Obj, Format::Ply, Format::Off] {
-            let again = good(format, written(&mesh, format, Coordinates::F64));
+            let again = good(format, written(&mesh, format, Precision::F64));
             prop_assert_eq!(&again.triangles, &mesh.triangles);
             for (found, expected) in again.vertices.iter().zip(&mesh.vertices) {
                 prop_assert_eq!(bits(found), bits(expected), "{}", format);

@@ -1,7 +1,8 @@
 //! Errors, what is missing, creases and shells against closed forms.
 
 use crate::mesh::{TriMesh, shapes};
-use crate::offset::{Length, OffsetSettings, VoxelSize, offset};
+use crate::offset::{OffsetSettings, offset};
+use crate::quantity::{Length, VoxelSize};
 use crate::run::RunSettings;
 use crate::verify::{Promise, Subject, VerifyError, VerifyReport, VerifySettings, verify};
 
