@@ -108,6 +108,47 @@ fn files_that_prose_names_exist() {
 }
 
 #[test]
+fn tests_that_prose_names_exist() {
+    let code: String = rust().iter().map(|path| fs::read_to_string(path).unwrap()).collect();
+    let (mut all, mut missing) = (0, Vec::new());
+    for path in markdown() {
+        let text = fs::read_to_string(&path).unwrap();
+        for (number, line) in prose_lines(&text) {
+            for name in line.split('`').skip(1).step_by(2) {
+                let is_sentence =
+                    name.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_');
+                if is_sentence && name.matches('_').count() >= 4 {
+                    all += 1;
+                    if !code.contains(&format!("fn {name}(")) {
+                        missing.push(format!("{}:{number}: {name}", path.display()));
+                    }
+                }
+            }
+        }
+    }
+    assert!(all > 10, "only {all} names were found");
+    assert!(missing.is_empty(), "there is no test\n{}", missing.join("\n"));
+}
+
+#[test]
+fn all_rooms_are_in_the_architecture() {
+    let library = fs::read_to_string("src/lib.rs").unwrap();
+    let page = fs::read_to_string("ARCHITECTURE.md").unwrap();
+    let mut rooms = 0;
+    for line in library.lines() {
+        let Some(name) =
+            line.split_once("mod ").filter(|(before, _)| before.is_empty() || before.starts_with("pub"))
+        else {
+            continue;
+        };
+        let Some(name) = name.1.strip_suffix(';') else { continue };
+        rooms += 1;
+        assert!(page.contains(&format!("\n| `{name}` |")), "ARCHITECTURE.md has no line for {name}");
+    }
+    assert!(rooms > 10, "only {rooms} rooms were found");
+}
+
+#[test]
 fn links_resolve() {
     let (mut all, mut broken) = (0, Vec::new());
     for path in markdown() {
