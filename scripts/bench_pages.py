@@ -3,6 +3,8 @@
 import re
 import textwrap
 
+import wrap
+
 # The cases with pictures: what of the page of `exocarp compare --report` is kept, and what it shows.
 PICTURES = {
     ("carved_cube", "2%", 256): ["section-1"],
@@ -257,6 +259,20 @@ a page like this for one model, with more pictures.
 
 {cases}"""
 
+PAPER = """# The tables of [LW11], measured here
+
+Written by `make bench-report` from one run, as `exocarp paper --models DIR` prints them; do not edit. The
+paper's figures stand beside ours. Most of its models are not public; each table says what stands for them.
+[design-notes.md](design-notes.md#what-a-close-reading-of-lw11-shows) says what a close reading shows.
+
+{head}
+```text
+{tables}
+```
+
+[LW11]: paper-map.md#lw11-offsets
+"""
+
 
 def compare_case(case, pictures):
     """All columns of one comparison, and its pictures."""
@@ -367,8 +383,14 @@ def write_figures(data, path):
     path.write_text(f"{before}{FIRST_MARK}\n{figures(data)}\n{LAST_MARK}{after}")
 
 
+def save(path, text):
+    """Writes a page, wrapped as all prose is."""
+    path.write_text("\n".join(wrap.wrapped(text.split("\n"), wrap.WIDTH)))
+
+
 def write(data, docs):
     """Writes both pages, and the pictures of the second."""
+    docs.mkdir(parents=True, exist_ok=True)
     times, quality = peers(data)
     text = BENCHMARKS.format(
         head=head(data),
@@ -384,10 +406,11 @@ def write(data, docs):
         single="One run each.\n" if data["quick"] else "",
         thickening=thickening(data),
     )
-    (docs / "benchmarks.md").write_text(text)
+    save(docs / "benchmarks.md", text)
+    save(docs / "paper-tables.md", PAPER.format(head=head(data), tables=data["paper"].rstrip()))
     directory = docs / "compare"
     directory.mkdir(parents=True, exist_ok=True)
     for old in [*directory.glob("*.png"), *directory.glob("*.svg")]:
         old.unlink()
     cases = [compare_case(case, pictures(case, directory)) for case in data["peers"]]
-    (directory / "README.md").write_text(COMPARE.format(head=head(data), cases="\n".join(cases)))
+    save(directory / "README.md", COMPARE.format(head=head(data), cases="\n".join(cases)))

@@ -263,6 +263,19 @@ def thickening(bench):
     return rows
 
 
+def paper(bench):
+    """The tables of [LW11] as the program prints them, on a coarser grid in a quick run."""
+    options = ["--models", bench.options.models] if bench.options.models else []
+    if bench.small:
+        options += ["--resolution", 32 if bench.options.tiny else 128]
+
+    def make():
+        command = [bench.program, "paper", *map(str, options), "--threads", "2"]
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+    return bench.kept("paper", make)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default="target/release/exocarp", help="the program to measure")
@@ -283,7 +296,7 @@ def main():
         "runs": bench.runs,
         "machine": bench.kept("machine", lambda: machine(options)),
     }
-    for step in (peers, growth, threads, streaming, noisy, thickening):
+    for step in (peers, growth, threads, streaming, noisy, thickening, paper):
         data[step.__name__] = step(bench)
     bench_pages.write(data, Path(options.docs))
     if not options.tiny and options.readme:
