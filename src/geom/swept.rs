@@ -49,11 +49,7 @@ impl Swept {
 
     /// Distance from `p` to the inner rectangle (segment, point).
     pub fn core_distance(&self, p: DVec3) -> f64 {
-        let d = p - self.centre;
-        let x = (d.dot(self.u).abs() - self.half[0]).max(0.0);
-        let y = (d.dot(self.v).abs() - self.half[1]).max(0.0);
-        let z = d.dot(self.u.cross(self.v));
-        (x * x + y * y + z * z).sqrt()
+        self.core_distance_squared(p, self.u.cross(self.v)).sqrt()
     }
 
     /// No point of the volume is nearer to `p` than this.
@@ -79,20 +75,28 @@ impl Swept {
         8.0 * a * b * r + 2.0 * PI * r * r * (a + b) + 4.0 / 3.0 * PI * r * r * r
     }
 
-    /// The best fitting volume around `spheres` (at least one): of point-, line- and rectangle-swept the
-    /// one with the smallest volume, the simpler one on a tie, with axes by principal components.
+    /// Returns the best fitting volume around `spheres` (at least one).
     pub fn around(spheres: &[Sphere]) -> Swept {
+        Swept::shape_around(spheres).with_radius_around(spheres)
+    }
+
+    /// Returns centre, axes and half-lengths of [`around`](Self::around), but for its last digits the
+    /// radius, too. Who rounds the volume has to widen it again, and need not do that twice.
+    ///
+    /// Of point-, line- and rectangle-swept it is the one with the smallest volume, the simpler one on
+    /// a tie, with axes by principal components.
+    pub fn shape_around(spheres: &[Sphere]) -> Swept {
         let (u, v) = principal_axes(spheres);
         let frame = Frame::new(spheres, u, v);
         let [rectangle, line, point] =
             [SweptKind::Rectangle, SweptKind::Line, SweptKind::Point].map(|kind| frame.fit(kind));
         let best = if line.volume() <= rectangle.volume() { line } else { rectangle };
-        let best = if point.volume() <= best.volume() { point } else { best };
-        best.with_radius_around(spheres)
+        if point.volume() <= best.volume() { point } else { best }
     }
 
-    /// The rectangle-swept volume of a triangle, along its longest edge; its radius is rounding alone.
-    pub fn around_triangle(corners: [DVec3; 3]) -> Swept {
+    /// Returns the rectangle-swept volume of a triangle, along its longest edge, with the radius 0:
+    /// [`with_radius_around`](Self::with_radius_around) its corners gives the one that rounding needs.
+    pub fn shape_around_triangle(corners: [DVec3; 3]) -> Swept {
         let longest = (0..3)
             .max_by(|&i, &j| {
                 let length = |k: usize| (corners[(k + 1) % 3] - corners[k]).length_squared();
@@ -106,15 +110,41 @@ impl Swept {
         // The third corner lies between the ends of the longest edge, but for rounding.
         let half = [0.5 * base.length(), 0.5 * apex.dot(v).max(0.0)];
         let centre = corners[longest] + u * half[0] + v * half[1];
-        Swept { centre, u, v, half, radius: 0.0 }.with_radius_around(&corners.map(|c| (c, 0.0)))
+        Swept { centre, u, v, half, radius: 0.0 }
     }
 
-    /// The same volume with the radius that `spheres` really need, after centre, axes or half-lengths
-    /// were rounded.
+    /// Returns this volume with the radius that `spheres` really need, after centre, axes or
+    /// half-lengths were rounded.
     pub fn with_radius_around(self, spheres: &[Sphere]) -> Swept {
-        let radius = spheres.iter().map(|&(p, r)| self.core_distance(p) + r).fold(0.0, f64::max);
+        let normal = self.u.cross(self.v);
+        let radius = farthest(spheres, |p| self.core_distance_squared(p, normal));
         Swept { radius, ..self }
     }
+
+    /// Returns the squared distance from `p` to the inner rectangle, whose unit normal is `normal`.
+    #[inline]
+    fn core_distance_squared(&self, p: DVec3, normal: DVec3) -> f64 {
+        let d = p - self.centre;
+        let x = (d.dot(self.u).abs() - self.half[0]).max(0.0);
+        let y = (d.dot(self.v).abs() - self.half[1]).max(0.0);
+        let z = d.dot(normal);
+        x * x + y * y + z * z
+    }
+}
+
+/// Returns how far the farthest point of `spheres` is from a core, of which `squared` gives the squared
+/// distance of a centre. Points share one square root: it never falls where its argument grows.
+#[inline]
+fn farthest(spheres: &[Sphere], squared: impl Fn(DVec3) -> f64) -> f64 {
+    let (mut points, mut others) = (0.0f64, 0.0f64);
+    for &(p, r) in spheres {
+        if r == 0.0 {
+            points = points.max(squared(p));
+        } else {
+            others = others.max(squared(p).sqrt() + r);
+        }
+    }
+    others.max(points.sqrt())
 }
 
 /// The direction of `v`, what is left of a vector of about `size` after its part along the unit vector `u`
@@ -164,17 +194,33 @@ impl Frame {
         Frame { origin, axes: [u, v, n], spheres, mid: (lo + hi) * 0.5 }
     }
 
-    /// The volume of one kind around the spheres, but for rounding.
+    /// Returns the volume of one kind around the spheres, but for rounding.
     fn fit(&self, kind: SweptKind) -> Swept {
         let Frame { origin, axes: [u, v, n], ref spheres, mid } = *self;
-        // Squared distance of a sphere from the core's line or plane, as far as the core's extent does not matter.
-        let off_core = |p: DVec3| match kind {
-            SweptKind::Rectangle => (p.z - mid.z) * (p.z - mid.z),
-            SweptKind::Line | SweptKind::Point => {
-                (p.y - mid.y) * (p.y - mid.y) + (p.z - mid.z) * (p.z - mid.z)
-            }
+        let [(x, half_u), (y, half_v)] = self.core(kind);
+        let centre = origin + u * x + v * y + n * mid.z;
+        let radius = farthest(spheres, |p| {
+            let (dx, dy) = (((p.x - x).abs() - half_u).max(0.0), ((p.y - y).abs() - half_v).max(0.0));
+            let dz = p.z - mid.z;
+            dx * dx + dy * dy + dz * dz
+        });
+        Swept { centre, u, v, half: [half_u, half_v], radius }
+    }
+
+    /// Returns the middle and half the length of the core of one kind, along its first and second axis.
+    fn core(&self, kind: SweptKind) -> [(f64, f64); 2] {
+        let Frame { ref spheres, mid, .. } = *self;
+        if kind == SweptKind::Point {
+            return [(mid.x, 0.0), (mid.y, 0.0)];
+        }
+        let is_plane = kind == SweptKind::Rectangle;
+        // Squared distance of a sphere from the core's line or plane, as if that had no end.
+        let off_core = |p: DVec3| {
+            let z = (p.z - mid.z) * (p.z - mid.z);
+            if is_plane { z } else { (p.y - mid.y) * (p.y - mid.y) + z }
         };
-        let radius = spheres.iter().map(|&(p, r)| off_core(p).sqrt() + r).fold(0.0, f64::max);
+        // The radius around an endless core.
+        let radius = farthest(spheres, off_core);
         let (mut from, mut to) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for &(p, r) in spheres {
             // The round end already covers this much beyond the core, so the core can be shorter.
@@ -185,13 +231,7 @@ impl Frame {
             let (from, to) = (from[axis], to[axis]);
             if from < to { ((from + to) * 0.5, (to - from) * 0.5) } else { (mid[axis], 0.0) }
         };
-        let (x, half_u) = if kind == SweptKind::Point { (mid.x, 0.0) } else { extent(0) };
-        let (y, half_v) = if kind == SweptKind::Rectangle { extent(1) } else { (mid.y, 0.0) };
-        let centre = origin + u * x + v * y + n * mid.z;
-        let swept = Swept { centre, u, v, half: [half_u, half_v], radius };
-        // What the ends leave out: the radius so far is that of an endless core.
-        let local = Swept { centre: DVec3::new(x, y, mid.z), u: DVec3::X, v: DVec3::Y, ..swept };
-        Swept { radius: local.with_radius_around(spheres).radius, ..swept }
+        [extent(0), if is_plane { extent(1) } else { (mid.y, 0.0) }]
     }
 }
 
@@ -240,7 +280,7 @@ mod tests {
         let (a, b) = (DVec3::new(0.37, -0.91, 0.22), DVec3::new(-0.55, 0.13, 0.87));
         for off in [0.0, 1e-17, 1e-14, 1e-9, 1e-6] {
             for c in [a, b, a.lerp(b, 0.3)] {
-                let swept = Swept::around_triangle([a, b, c + off * DVec3::new(0.3, 1.0, -0.2)]);
+                let swept = Swept::shape_around_triangle([a, b, c + off * DVec3::new(0.3, 1.0, -0.2)]);
                 assert!(swept.u.dot(swept.v).abs() < 1e-12, "{off}: {swept:?}");
                 assert!((swept.v.length() - 1.0).abs() < 1e-12 && (swept.u.length() - 1.0).abs() < 1e-12);
             }
@@ -249,8 +289,8 @@ mod tests {
 
     #[test]
     fn a_triangle_has_no_radius() {
-        let swept =
-            Swept::around_triangle([DVec3::ZERO, DVec3::new(4.0, 0.0, 0.0), DVec3::new(1.0, 2.0, 3.0)]);
+        let corners = [DVec3::ZERO, DVec3::new(4.0, 0.0, 0.0), DVec3::new(1.0, 2.0, 3.0)];
+        let swept = Swept::shape_around_triangle(corners).with_radius_around(&corners.map(|c| (c, 0.0)));
         assert!(swept.radius < 1e-14);
     }
 }

@@ -157,7 +157,7 @@ impl Builder<'_> {
             };
             node.level = Level::Inner;
             for (child, spheres) in children {
-                node.push(child as u32, &Swept::around(&spheres), &spheres);
+                node.push(child as u32, &Swept::shape_around(&spheres), &spheres);
             }
         }
         self.enclosing(primitives, node)
@@ -167,7 +167,7 @@ impl Builder<'_> {
         let mut node = Node::EMPTY;
         for (i, primitive) in primitives.iter().enumerate() {
             let corners = self.corners(primitive.id);
-            node.push((slot + i) as u32, &Swept::around_triangle(corners), &corners.map(|c| (c, 0.0)));
+            node.push((slot + i) as u32, &Swept::shape_around_triangle(corners), &corners.map(|c| (c, 0.0)));
         }
         node
     }

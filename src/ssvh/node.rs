@@ -45,7 +45,8 @@ impl Node {
         level: Level::Leaf,
     };
 
-    /// Appends a child whose volume is `swept`, rounded to f32 and widened to enclose `spheres` again.
+    /// Appends a child whose volume is `swept`, rounded to f32 and widened to enclose `spheres` again;
+    /// the radius that it has is not needed for that.
     /// Returns the volume as it is stored. Coordinates are relative to the hierarchy's centre.
     pub(super) fn push(&mut self, child: u32, swept: &Swept, spheres: &[Sphere]) -> Swept {
         let lane = self.count as usize;
