@@ -1,5 +1,6 @@
-//! Whether two triangles have more in common than the vertices and edges they share: exactly, by the signs of
-//! determinants. Only the point that is given back is rounded.
+//! Exact test whether two triangles meet elsewhere than in the vertices and edges that they share.
+//!
+//! The signs of determinants decide. Only the point that is returned is rounded.
 
 #[cfg(test)]
 pub(crate) mod oracle;
@@ -7,12 +8,15 @@ pub(crate) mod oracle;
 mod tests;
 
 use super::predicates::{orient2d, orient3d, project, projection_axis};
+use glam::DVec3;
 
 type Point = [f64; 3];
 type Corners = [Point; 3];
 
-/// A point in which two triangles with vertex numbers `va` and `vb` and corners `pa` and `pb` meet elsewhere than
-/// in what they share by vertex number, up to rounding; `None` if there is none, decided exactly. Both must have
+/// Finds a point in which two triangles meet elsewhere than in what they share by vertex number.
+///
+/// The triangles have the vertex numbers `va` and `vb`, and corners at `pa` and `pb`. `None` if
+/// there is no such point, decided exactly; the point itself is rounded. Both triangles must have
 /// area and three different vertices. Triangles with three vertices in common always meet.
 pub fn meeting_point(va: [u32; 3], pa: Corners, vb: [u32; 3], pb: Corners) -> Option<Point> {
     let mut shared = [(0, 0); 3];
@@ -30,20 +34,21 @@ pub fn meeting_point(va: [u32; 3], pa: Corners, vb: [u32; 3], pb: Corners) -> Op
             let (i, j) = (3 - shared[0].0 - shared[1].0, 3 - shared[0].1 - shared[1].1);
             folded([pa[shared[0].0], pa[shared[1].0]], pa[i], pb[j])
         }
-        _ => Some(middle(&pa)),
+        _ => Some(centroid(pa)),
     }
 }
 
-/// The corners beginning with corner `first`.
+/// Returns the corners in their cyclic order, beginning with corner `first`.
 fn rotated(t: Corners, first: usize) -> Corners {
     [t[first], t[(first + 1) % 3], t[(first + 2) % 3]]
 }
 
-fn middle(points: &[Point]) -> Point {
-    std::array::from_fn(|axis| points.iter().map(|p| p[axis]).sum::<f64>() / points.len() as f64)
+fn centroid(corners: Corners) -> Point {
+    let [a, b, c] = corners.map(DVec3::from);
+    ((a + b + c) / 3.0).to_array()
 }
 
-/// The side of the plane of `t` that each point is on.
+/// Returns numbers whose signs are the sides of the plane of `t` that the points are on.
 fn sides<const N: usize>(t: Corners, points: [Point; N]) -> [f64; N] {
     points.map(|p| orient3d(t[0], t[1], t[2], p))
 }
@@ -52,7 +57,8 @@ fn one_side(sides: &[f64]) -> bool {
     sides.iter().all(|&s| s > 0.0) || sides.iter().all(|&s| s < 0.0)
 }
 
-/// Triangles without a common vertex: they meet if and only if an edge of one meets the other.
+/// Finds a common point of triangles without a common vertex. They meet if and only if an edge of
+/// one meets the other.
 fn disjoint(a: Corners, b: Corners) -> Option<Point> {
     let b_of_a = sides(a, b);
     if one_side(&b_of_a) {
@@ -71,8 +77,9 @@ fn disjoint(a: Corners, b: Corners) -> Option<Point> {
     edges_of(a, a_of_b, b).or_else(|| edges_of(b, b_of_a, a))
 }
 
-/// Triangles whose first corners are the same vertex: they meet elsewhere if and only if the edge opposite to
-/// it of one of them meets the other.
+/// Finds a common point, but for the vertex, of triangles whose first corners are the same vertex.
+/// They meet elsewhere if and only if the edge opposite to the vertex of one of them meets the
+/// other.
 fn at_vertex(a: Corners, b: Corners) -> Option<Point> {
     // Apart from the common corner, a triangle on one side of the other's plane does not meet it.
     let b_of_a = sides(a, [b[1], b[2]]);
@@ -86,19 +93,19 @@ fn at_vertex(a: Corners, b: Corners) -> Option<Point> {
     segment_meets([a[1], a[2]], a_of_b, b).or_else(|| segment_meets([b[1], b[2]], b_of_a, a))
 }
 
-/// Triangles on a common edge with opposite corners `a` and `b`: they meet elsewhere if and only if they lie
-/// in one plane on the same side of the edge.
+/// Finds a common point, but for the edge, of triangles on a common edge with opposite corners `a`
+/// and `b`. They meet elsewhere if and only if they lie in one plane on the same side of the edge.
 fn folded(edge: [Point; 2], a: Point, b: Point) -> Option<Point> {
     if orient3d(edge[0], edge[1], a, b) != 0.0 {
         return None;
     }
     let axis = projection_axis([edge[0], edge[1], a])?;
     let side = |p| orient2d(project(edge[0], axis), project(edge[1], axis), project(p, axis));
-    ((side(a) > 0.0) == (side(b) > 0.0)).then(|| middle(&edge))
+    ((side(a) > 0.0) == (side(b) > 0.0)).then(|| DVec3::from(edge[0]).midpoint(edge[1].into()).to_array())
 }
 
-/// Where the closed segment meets the closed triangle; `side` are the sides of the triangle's plane that its
-/// ends are on.
+/// Finds a point in which the closed segment meets the closed triangle. `side` are the sides of the
+/// triangle's plane that the segment's ends are on.
 fn segment_meets(segment: [Point; 2], side: [f64; 2], t: Corners) -> Option<Point> {
     let [p, q] = segment;
     if one_side(&side) {
@@ -112,10 +119,11 @@ fn segment_meets(segment: [Point; 2], side: [f64; 2], t: Corners) -> Option<Poin
         let through = turns.iter().all(|&s| s >= 0.0) || turns.iter().all(|&s| s <= 0.0);
         through.then(|| side[0] / (side[0] - side[1]))?
     };
-    Some(std::array::from_fn(|axis| p[axis] + along * (q[axis] - p[axis])))
+    Some(DVec3::from(p).lerp_monotonic(q.into(), along).to_array())
 }
 
-/// The same in the plane, as a parameter from 0 at `p` to 1 at `q`.
+/// Finds a point in which the closed segment pq meets the closed triangle, all in one plane.
+/// Returns the point's parameter, from 0 at `p` to 1 at `q`.
 fn segment_meets_flat(p: [f64; 2], q: [f64; 2], t: [[f64; 2]; 3]) -> Option<f64> {
     let contains = |x: [f64; 2]| {
         let turns = [orient2d(t[0], t[1], x), orient2d(t[1], t[2], x), orient2d(t[2], t[0], x)];
@@ -128,8 +136,9 @@ fn segment_meets_flat(p: [f64; 2], q: [f64; 2], t: [[f64; 2]; 3]) -> Option<f64>
     }
 }
 
-/// Where two closed segments in the plane meet, as a parameter of pq. No end of pq is on a triangle that ab is
-/// a side of: if they overlap on a line, then a and b are in pq.
+/// Finds a point in which the closed segments pq and ab in the plane meet. Returns the point's
+/// parameter on pq. No end of pq is on a triangle that has ab as an edge: if the segments overlap
+/// on a line, then a and b are in pq.
 fn segments_cross(p: [f64; 2], q: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Option<f64> {
     let (pa, pb) = (orient2d(p, q, a), orient2d(p, q, b));
     let (ap, aq) = (orient2d(a, b, p), orient2d(a, b, q));

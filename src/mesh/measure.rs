@@ -1,52 +1,40 @@
 //! Area and volume of a mesh.
 
 use super::TriMesh;
+use glam::DVec3;
 
-/// The surface area, in square model units.
+/// Returns the surface area, in square model units.
 ///
 /// # Panics
 /// When a vertex number is out of range.
 pub fn area(mesh: &TriMesh) -> f64 {
     (0..mesh.triangles.len())
         .map(|t| {
-            let [a, b, c] = mesh.corners(t);
-            let n = cross(sub(b, a), sub(c, a));
-            0.5 * dot(n, n).sqrt()
+            let [a, b, c] = mesh.corners(t).map(DVec3::from);
+            0.5 * (b - a).cross(c - a).length()
         })
         .sum()
 }
 
-/// The signed volume enclosed by the mesh, in cubic model units: positive when the triangles are
-/// counter-clockwise seen from outside, negative when the mesh is inside out.
+/// Returns the signed volume enclosed by the mesh, in cubic model units. It is positive when the
+/// triangles are counter-clockwise seen from outside, negative when the mesh is inside out.
 ///
-/// Meaningful for a closed, consistently oriented mesh only. Parts that lie inside one another add up with
-/// their signs, so a solid with a cavity has the volume of its material.
+/// Meaningful for a closed, consistently oriented mesh only. Parts that lie inside one another add
+/// up with their signs, so a solid with a cavity has the volume of its material.
 ///
 /// # Panics
 /// When a vertex number is out of range.
 pub fn signed_volume(mesh: &TriMesh) -> f64 {
     let Some([lo, hi]) = mesh.bounding_box() else { return 0.0 };
-    // Tetrahedra are spanned from the centre of the box, not from the world origin: far from the origin
-    // their volumes would be large numbers that cancel.
-    let origin: [f64; 3] = std::array::from_fn(|a| 0.5 * (lo[a] + hi[a]));
+    // Tetrahedra are spanned from the centre of the box, not from the world origin: far from the
+    // origin their volumes would be large numbers that cancel.
+    let origin = 0.5 * (DVec3::from(lo) + DVec3::from(hi));
     (0..mesh.triangles.len())
         .map(|t| {
-            let [a, b, c] = mesh.corners(t).map(|p| sub(p, origin));
-            dot(a, cross(b, c)) / 6.0
+            let [a, b, c] = mesh.corners(t).map(|p| DVec3::from(p) - origin);
+            a.dot(b.cross(c)) / 6.0
         })
         .sum()
-}
-
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 #[cfg(test)]
