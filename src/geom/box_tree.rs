@@ -82,8 +82,8 @@ pub(crate) struct BoxTree {
 }
 
 impl BoxTree {
-    /// Builds the tree over the triangles numbered `chosen` of a mesh with `vertices` and `triangles`.
-    /// Runs on the current rayon pool.
+    /// Builds the tree over the triangles numbered `chosen` of a mesh with `vertices` and
+    /// `triangles`. Runs on the current rayon pool.
     pub fn new(
         vertices: &[[f64; 3]],
         triangles: &[[u32; 3]],
@@ -120,8 +120,8 @@ impl BoxTree {
         self.meeting([p - margin, p + margin], visit);
     }
 
-    /// Calls `visit` with each triangle whose box meets the box with these corners, the lower corner
-    /// first.
+    /// Calls `visit` with each triangle whose box meets the box with these corners, the lower
+    /// corner first.
     pub fn meeting(&self, corners: [DVec3; 2], mut visit: impl FnMut(u32)) {
         let query = Box32::around(corners.map(|c| c.to_array()));
         self.leaves(&query, 0, &mut Vec::new(), |leaf| {
@@ -196,7 +196,8 @@ impl BoxTree {
         leaf * LEAF..((leaf + 1) * LEAF).min(self.order.len())
     }
 
-    /// Calls `visit` with each leaf from `first` on whose box meets `query`. `stack` is scratch space.
+    /// Calls `visit` with each leaf from `first` on whose box meets `query`. `stack` is scratch
+    /// space.
     fn leaves(
         &self,
         query: &Box32,

@@ -1,4 +1,5 @@
-//! Geometry below everything else: points, triangles and pairs of them, swept spheres, roots, predicates, small matrices.
+//! Geometry below everything else: points, triangles and pairs of them, swept spheres, roots,
+//! predicates, small matrices.
 
 pub mod aabb;
 pub mod box_tree;

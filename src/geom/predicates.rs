@@ -9,20 +9,22 @@ fn coord(p: [f64; 3]) -> Coord3D<f64> {
     Coord3D { x: p[0], y: p[1], z: p[2] }
 }
 
-/// Six times the signed volume of the tetrahedron abcd: ((b - a) x (c - a)) . (d - a). Positive when d
-/// sees the triangle abc counter-clockwise, zero when the four points are coplanar.
+/// Six times the signed volume of the tetrahedron abcd: ((b - a) x (c - a)) . (d - a). Positive
+/// when d sees the triangle abc counter-clockwise, zero when the four points are coplanar.
 #[inline]
 pub fn orient3d(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> f64 {
     // `robust` counts the other side as positive.
     robust::orient3d(coord(b), coord(a), coord(c), coord(d))
 }
 
-/// What the rounding errors of a determinant of three rows are below, as a part of the sum of the sizes of its products:
-/// the first bound of Shewchuk's adaptive test (1997), (7 + 56 e) e with e = 2^-53.
+/// What the rounding errors of a determinant of three rows are below, as a part of the sum of the
+/// sizes of its products: the first bound of Shewchuk's adaptive test (1997), (7 + 56 e) e with e =
+/// 2^-53.
 const ROUNDING: f64 = (7.0 + 56.0 * (0.5 * f64::EPSILON)) * (0.5 * f64::EPSILON);
 
-/// Whether `above` sees the triangle abc counter-clockwise and `below` clockwise, both strictly: exactly what two calls of
-/// [`orient3d`] say, in one go and without a call where the signs are clear.
+/// Whether `above` sees the triangle abc counter-clockwise and `below` clockwise, both strictly:
+/// exactly what two calls of [`orient3d`] say, in one go and without a call where the signs are
+/// clear.
 #[inline]
 pub fn are_apart([a, b, c]: [[f64; 3]; 3], above: [f64; 3], below: [f64; 3]) -> bool {
     let minus = |p: [f64; 3]| -> [f64; 3] { std::array::from_fn(|i| p[i] - a[i]) };
@@ -40,17 +42,17 @@ pub fn are_apart([a, b, c]: [[f64; 3]; 3], above: [f64; 3], below: [f64; 3]) -> 
     side(above) > 0.0 && side(below) < 0.0
 }
 
-/// Twice the signed area of the triangle abc: positive when it is counter-clockwise, zero when the three
-/// points are collinear.
+/// Twice the signed area of the triangle abc: positive when it is counter-clockwise, zero when the
+/// three points are collinear.
 #[inline]
 pub fn orient2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     let coord = |p: [f64; 2]| Coord { x: p[0], y: p[1] };
     robust::orient2d(coord(a), coord(b), coord(c))
 }
 
-/// An axis along which the triangle abc can be projected without losing its area: the first of x, y and z.
-/// `None` if and only if the corners lie exactly on a line, which they do when they do so in all three
-/// projections.
+/// An axis along which the triangle abc can be projected without losing its area: the first of x, y
+/// and z. `None` if and only if the corners lie exactly on a line, which they do when they do so in
+/// all three projections.
 #[inline]
 pub fn projection_axis(corners: [[f64; 3]; 3]) -> Option<usize> {
     (0..3).find(|&axis| {
@@ -83,7 +85,8 @@ mod tests {
         let mut state = 11u64;
         let mut random = || {
             state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            // Few different coordinates, so that many points are in a plane, and some a bit away from it.
+            // Few different coordinates, so that many points are in a plane, and some a bit away
+            // from it.
             let coarse = f64::from((state >> 40) as u32 % 4);
             if (state >> 33).is_multiple_of(8) { coarse.next_up() } else { coarse }
         };
@@ -101,7 +104,8 @@ mod tests {
     fn the_last_bit_decides() {
         let n = 1.0 + f64::EPSILON;
         let (a, b, c) = ([n, 1.0, 1.0], [1.0, n, 1.0], [1.0, 1.0, n]);
-        // x + y + z = 3 + epsilon on the plane; a third of an ulp off it cannot be seen in floating point.
+        // x + y + z = 3 + epsilon on the plane; a third of an ulp off it cannot be seen in floating
+        // point.
         assert!(orient3d(a, b, c, [n, n, 1.0]) > 0.0);
         assert!(orient3d(a, b, c, [1.0, 1.0, 1.0]) < 0.0);
         assert_eq!(orient3d(a, b, c, [n, 1.0, 1.0]), 0.0);

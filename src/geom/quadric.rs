@@ -1,15 +1,15 @@
-//! The quadratic error function of a sheet (Ju et al. 2002): the sum of squared distances to the tangent
-//! planes at its crossings, and where it is least, freely or within half-spaces.
+//! The quadratic error function of a sheet (Ju et al. 2002): the sum of squared distances to the
+//! tangent planes at its crossings, and where it is least, freely or within half-spaces.
 
 use crate::geom::sym3::Sym3;
 
-/// Eigenvalues below this fraction of the largest one count as zero, and the minimiser stays at the mean
-/// of the crossings along their eigenvectors.
+/// Eigenvalues below this fraction of the largest one count as zero, and the minimiser stays at the
+/// mean of the crossings along their eigenvectors.
 ///
-/// For two planes that meet at an exterior angle a, the ratio is tan^2(a / 2): 1e-3 keeps creases above
-/// 3.6 degrees. Larger values blunt weaker creases (1e-2: 11 degrees, 1e-1: 35 degrees). Smaller ones
-/// place vertices by the noise of the normals: an error e of a tangent plane moves the minimiser along the
-/// weak direction by e / sqrt(ratio), 32 e here.
+/// For two planes that meet at an exterior angle a, the ratio is tan^2(a / 2): 1e-3 keeps creases
+/// above 3.6 degrees. Larger values blunt weaker creases (1e-2: 11 degrees, 1e-1: 35 degrees).
+/// Smaller ones place vertices by the noise of the normals: an error e of a tangent plane moves the
+/// minimiser along the weak direction by e / sqrt(ratio), 32 e here.
 pub const CUTOFF: f64 = 1e-3;
 
 /// Violations of a half-space up to this, in voxels, count as none while looking for a minimum: the
@@ -43,8 +43,8 @@ pub struct Qef {
 }
 
 impl Qef {
-    /// Adds the plane through `point` with unit normal `normal`. A normal that is zero or not finite
-    /// adds the point to the mean only.
+    /// Adds the plane through `point` with unit normal `normal`. A normal that is zero or not
+    /// finite adds the point to the mean only.
     #[inline]
     pub fn add(&mut self, point: [f64; 3], normal: [f64; 3]) {
         self.count += 1.0;
@@ -62,8 +62,8 @@ impl Qef {
         self.points.map(|x| x / self.count)
     }
 
-    /// The least point of the function, nearest to the mean of the added points where it is not unique.
-    /// At least one plane must have been added.
+    /// The least point of the function, nearest to the mean of the added points where it is not
+    /// unique. At least one plane must have been added.
     pub fn minimiser(&self) -> Minimiser {
         self.minimiser_near(self.mean())
     }
@@ -105,12 +105,12 @@ impl Minimiser {
         self.weights[1]
     }
 
-    /// The least point within the intersection of `region`, up to a rounding error; `None` when none is
-    /// found, as when the intersection is empty.
+    /// The least point within the intersection of `region`, up to a rounding error; `None` when
+    /// none is found, as when the intersection is empty.
     ///
     /// The minimum of a convex quadratic function lies on the boundaries of at most three of the
-    /// half-spaces, with multipliers that are not negative (Karush, Kuhn, Tucker): all such sets are
-    /// tried, smaller ones first.
+    /// half-spaces, with multipliers that are not negative (Karush, Kuhn, Tucker): all such sets
+    /// are tried, smaller ones first.
     pub fn within(&self, region: &[HalfSpace]) -> Option<[f64; 3]> {
         let feasible = |w: [f64; 3]| region.iter().all(|half| half.depth(w) >= -TOLERANCE);
         if feasible(self.point) {
@@ -147,8 +147,8 @@ impl Minimiser {
         None
     }
 
-    /// The least point on the boundaries of one to three half-spaces, if the function pushes outwards
-    /// through all of them there.
+    /// The least point on the boundaries of one to three half-spaces, if the function pushes
+    /// outwards through all of them there.
     fn on_boundary(&self, set: &[HalfSpace]) -> Option<[f64; 3]> {
         let k = set.len();
         let mut pulled = [[0.0; 3]; 3];

@@ -1,9 +1,10 @@
 //! Vectors of floats, as wide as the machine has them, with the operators of numbers.
 //!
-//! [`dispatch`] runs a kernel with the widest instructions that the machine has of those that the program was built for,
-//! picked at run time. Every lane takes the same operations in the same order as a number would, none fused, so the
-//! results do not depend on the machine; but for f32 and the operations that say so, which are for bounds only: what is
-//! within their rounding is decided in f64. Kernels must not use closures, which would not be compiled for those
+//! [`dispatch`] runs a kernel with the widest instructions that the machine has of those that the
+//! program was built for, picked at run time. Every lane takes the same operations in the same
+//! order as a number would, none fused, so the results do not depend on the machine; but for f32
+//! and the operations that say so, which are for bounds only: what is within their rounding is
+//! decided in f64. Kernels must not use closures, which would not be compiled for those
 //! instructions.
 
 use pulp::{Arch, Simd, WithSimd};
@@ -281,7 +282,8 @@ points!(Vec3F32s, F32s, f32);
 points!(Vec3F64s, F64s, f64);
 
 impl<S: Simd> F32s<S> {
-    /// One of the vectors that eight words fill: of each word byte number `n`, from the lowest on, as a number.
+    /// One of the vectors that eight words fill: of each word byte number `n`, from the lowest on,
+    /// as a number.
     #[inline(always)]
     pub fn bytes(simd: S, words: &[u32; 8], vector: usize, n: u32) -> Self {
         let words = S::as_simd_u32s(words).0[vector];

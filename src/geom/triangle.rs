@@ -38,19 +38,21 @@ pub enum Feature {
     Vertex(Side),
 }
 
-/// Twice the area relative to the squared longest edge below which a triangle counts as a segment: its
-/// normal would carry fewer than five digits, while its height is below 1e-11 of its length, so that
-/// leaving out the interior moves no distance by more than that.
+/// Twice the area relative to the squared longest edge below which a triangle counts as a segment:
+/// its normal would carry fewer than five digits, while its height is below 1e-11 of its length, so
+/// that leaving out the interior moves no distance by more than that.
 const NEEDLE: f64 = 1e-11;
 
-/// A triangle ready for distance evaluation: corners and unit normal (zero for a needle that has none).
+/// A triangle ready for distance evaluation: corners and unit normal (zero for a needle that has
+/// none).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
     /// Corner positions.
     pub corners: [DVec3; 3],
     /// Unit normal by the right-hand rule, or zero.
     pub normal: DVec3,
-    /// Bit k: edge k runs from its second corner to its first, for canonical arithmetic (see `segment`).
+    /// Bit k: edge k runs from its second corner to its first, for canonical arithmetic (see
+    /// `segment`).
     flipped: u8,
 }
 
@@ -139,9 +141,9 @@ pub struct ClosestPoint {
 }
 
 impl Triangle {
-    /// The triangle with the given corners, whose vertices have the given numbers in their mesh. The
-    /// numbers only fix the direction in which an edge is evaluated: both triangles of an edge then
-    /// compute the same distance to it, to the last bit.
+    /// The triangle with the given corners, whose vertices have the given numbers in their mesh.
+    /// The numbers only fix the direction in which an edge is evaluated: both triangles of an edge
+    /// then compute the same distance to it, to the last bit.
     pub fn new(corners: [DVec3; 3], vertices: [u32; 3]) -> Self {
         let [a, b, c] = corners;
         let cross = (b - a).cross(c - a);
@@ -162,7 +164,8 @@ impl Triangle {
         }
         let mut best = f64::INFINITY;
         for side in Side::ALL {
-            // The closest edge is one whose plane the point is not inside of; a needle (all zero) takes all three.
+            // The closest edge is one whose plane the point is not inside of; a needle (all zero)
+            // takes all three.
             if outside[side.index()] >= 0.0 {
                 best = best.min(self.segment(side, p).1);
             }
@@ -194,7 +197,8 @@ impl Triangle {
         if self.flipped >> side.0 & 1 == 1 { (side.next(), side) } else { (side, side.next()) }
     }
 
-    /// The closest point to `p`. Of two edges at the same distance the one with the lower number counts.
+    /// The closest point to `p`. Of two edges at the same distance the one with the lower number
+    /// counts.
     pub fn closest(&self, p: DVec3) -> ClosestPoint {
         let outside = self.outside(p);
         if outside.iter().all(|&x| x < 0.0) {
@@ -218,8 +222,8 @@ impl Triangle {
         best
     }
 
-    /// The feature that the closest point to `p` lies on, as [`closest`](Self::closest) finds it: faster, since where `p` is
-    /// beyond one edge no distance is needed.
+    /// The feature that the closest point to `p` lies on, as [`closest`](Self::closest) finds it:
+    /// faster, since where `p` is beyond one edge no distance is needed.
     #[inline]
     pub fn feature(&self, p: DVec3) -> Feature {
         let beyond = self.outside(p).map(|x| x >= 0.0);
@@ -242,13 +246,14 @@ impl Triangle {
         }
     }
 
-    /// Parameters (u, v) of `point` on the triangle, t(u, v) = b + u e0 + v e1 with b the first corner,
-    /// e0 and e1 the edges from it to the second and third: u, v >= 0, u + v <= 1.
+    /// Parameters (u, v) of `point` on the triangle, t(u, v) = b + u e0 + v e1 with b the first
+    /// corner, e0 and e1 the edges from it to the second and third: u, v >= 0, u + v <= 1.
     pub fn parameters(&self, point: DVec3) -> [f64; 2] {
         let twice_area = self.outside(point).map(|x| (-x).max(0.0));
         let sum = twice_area[0] + twice_area[1] + twice_area[2];
         if sum > 0.0 {
-            // The weight of a corner is the area opposite to it: edge 2 faces corner 1, edge 0 corner 2.
+            // The weight of a corner is the area opposite to it: edge 2 faces corner 1, edge 0
+            // corner 2.
             return [twice_area[2] / sum, twice_area[0] / sum];
         }
         // A needle: the position along its longest edge.
@@ -269,8 +274,8 @@ impl Triangle {
         self.corners[side.next().index()] - self.corners[side.index()]
     }
 
-    /// Per edge how far `p` is beyond the plane through the edge perpendicular to the triangle, positive
-    /// outside, times the edge's length.
+    /// Per edge how far `p` is beyond the plane through the edge perpendicular to the triangle,
+    /// positive outside, times the edge's length.
     #[inline(always)]
     pub fn outside(&self, p: DVec3) -> [f64; 3] {
         let [a, b, c] = self.corners;
@@ -281,8 +286,8 @@ impl Triangle {
         ]
     }
 
-    /// Closest point on an edge: point, squared distance, feature. Evaluated from the end with the lower
-    /// vertex number, so that the triangles of an edge agree.
+    /// Closest point on an edge: point, squared distance, feature. Evaluated from the end with the
+    /// lower vertex number, so that the triangles of an edge agree.
     #[inline(always)]
     fn segment(&self, side: Side, p: DVec3) -> (DVec3, f64, Feature) {
         let (first, second) = self.ends(side);

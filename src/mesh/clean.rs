@@ -1,5 +1,5 @@
-//! Makes a mesh as files have it into one that has a topology: equal positions become one vertex, and
-//! triangles that bound nothing go.
+//! Makes a mesh as files have it into one that has a topology: equal positions become one vertex,
+//! and triangles that bound nothing go.
 
 use std::fmt;
 
@@ -21,8 +21,8 @@ pub struct CleanReport {
     pub duplicate_triangles: usize,
     /// Vertices that were dropped because no triangle has them (any more).
     pub unreferenced_vertices: usize,
-    /// Triangles that were split at a vertex on their edge, because a triangle without area that was dropped
-    /// had that vertex and that edge.
+    /// Triangles that were split at a vertex on their edge, because a triangle without area that
+    /// was dropped had that vertex and that edge.
     pub split_triangles: usize,
 }
 
@@ -64,23 +64,24 @@ impl fmt::Display for CleanReport {
 
 /// Cleans a mesh, in this order:
 ///
-/// 1. Vertices at exactly the same position become the first of them (-0 equals 0). No tolerance: a near
-///    vertex is another vertex.
+/// 1. Vertices at exactly the same position become the first of them (-0 equals 0). No tolerance: a
+///    near vertex is another vertex.
 /// 2. Triangles with two equal corners or exactly no area are dropped. The area is decided by exact
-///    predicates, so a sliver stays however thin it is. Where the corners lie on a line, the triangle across
-///    the longest edge is split at the corner in the middle (see `degenerate.rs`): so a closed mesh stays
-///    closed.
-/// 3. Triangles with the corners and the orientation of an earlier one are dropped; where step 2 splits,
-///    those with an area also before it. Two triangles with the same corners and *opposite* orientation both
-///    stay: together they are a fin without thickness, a surface that was drawn from both sides. Dropping one
-///    would leave a sheet with a border where the file has a closed surface, dropping both a hole where the
-///    file has something.
+///    predicates, so a sliver stays however thin it is. Where the corners lie on a line, the
+///    triangle across the longest edge is split at the corner in the middle (see `degenerate.rs`):
+///    so a closed mesh stays closed.
+/// 3. Triangles with the corners and the orientation of an earlier one are dropped; where step 2
+///    splits, those with an area also before it. Two triangles with the same corners and *opposite*
+///    orientation both stay: together they are a fin without thickness, a surface that was drawn
+///    from both sides. Dropping one would leave a sheet with a border where the file has a closed
+///    surface, dropping both a hole where the file has something.
 /// 4. Vertices that no triangle has are dropped.
 ///
 /// What remains keeps its order, so the result depends on nothing but the mesh.
 ///
 /// # Panics
-/// When a triangle names a vertex that the mesh does not have; meshes from [`load`](crate::io::load) never do.
+/// When a triangle names a vertex that the mesh does not have; meshes from
+/// [`load`](crate::io::load) never do.
 pub fn clean(mesh: TriMesh) -> (TriMesh, CleanReport) {
     let TriMesh { mut vertices, mut triangles } = mesh;
     let mut report =
@@ -115,7 +116,8 @@ pub fn weld(mesh: TriMesh) -> (TriMesh, CleanReport) {
     )
 }
 
-/// Lets triangles name the first vertex at each position. Returns how many vertices are another one again.
+/// Lets triangles name the first vertex at each position. Returns how many vertices are another one
+/// again.
 fn merge_equal(vertices: &[[f64; 3]], triangles: &mut [[u32; 3]]) -> usize {
     let first = first_at_position(vertices);
     let merged = first.par_iter().enumerate().filter(|&(i, &v)| i != v as usize).count();
@@ -141,8 +143,8 @@ fn drop_numbered(triangles: &mut Vec<[u32; 3]>, numbers: &[u32]) {
     });
 }
 
-/// Drops triangles that are an earlier one again, whichever corner they begin with, but not those with the
-/// numbers `kept`, which ascend. Returns how many.
+/// Drops triangles that are an earlier one again, whichever corner they begin with, but not those
+/// with the numbers `kept`, which ascend. Returns how many.
 fn drop_duplicates(triangles: &mut Vec<[u32; 3]>, kept: &[u32]) -> usize {
     let key = |t: [u32; 3]| match t {
         [a, b, c] if a < b && a < c => [a, b, c],
@@ -201,8 +203,8 @@ mod tests {
             [2.0, 0.0, 0.0],
             [0.0, 0.0, 1.0],
         ];
-        // The second has two corners at one place, the third lies on a line, the fourth and the sixth are
-        // the first again, the fifth is its other side.
+        // The second has two corners at one place, the third lies on a line, the fourth and the
+        // sixth are the first again, the fifth is its other side.
         let triangles = [[1, 2, 3], [1, 4, 3], [4, 2, 5], [2, 3, 4], [3, 2, 1], [3, 1, 2], [4, 3, 6]];
         let (cleaned, report) = clean(mesh(&vertices, &triangles));
         assert_eq!(cleaned.vertices, [vertices[1], vertices[2], vertices[3], vertices[6]]);
@@ -235,8 +237,8 @@ mod tests {
 
     #[test]
     fn area_is_decided_exactly() {
-        // The third corner lies on the line, which rounding would deny; or beside it by one bit of its last
-        // coordinate, which rounding would not see.
+        // The third corner lies on the line, which rounding would deny; or beside it by one bit of
+        // its last coordinate, which rounding would not see.
         let on: [[f64; 3]; 3] = [[0.1, 0.1, 0.1], [0.3, 0.3, 0.3], [0.7, 0.7, 0.7]];
         let mut beside = on;
         beside[2][2] = beside[2][2].next_up();
@@ -271,8 +273,8 @@ mod tests {
         }
     }
 
-    /// Enough of it for several chunks and shards: a sheet of squares, each triangle with vertices of its
-    /// own, and some triangles twice.
+    /// Enough of it for several chunks and shards: a sheet of squares, each triangle with vertices
+    /// of its own, and some triangles twice.
     #[test]
     fn a_large_soup_becomes_a_sheet_on_any_number_of_threads() {
         const SIDE: usize = 200;
@@ -305,7 +307,8 @@ mod tests {
     }
 
     proptest! {
-        /// On a coarse lattice, where everything that is to be cleaned is frequent and products are exact.
+        /// On a coarse lattice, where everything that is to be cleaned is frequent and products are
+        /// exact.
         #[test]
         fn agrees_with_the_definition(
             vertices in prop::collection::vec(prop::array::uniform3(-1i8..2), 12),

@@ -8,11 +8,12 @@
 //!     `--m--'              (below p m and m q are their neighbours, as before)
 //! ```
 //!
-//! The triangle across its longest edge gets the middle corner instead: p q r becomes p m r and m q r. Their
-//! sum has exactly the edges of the two triangles before, so what was closed stays closed, whatever else
-//! meets there. The neighbour may be without area itself; then its halves are taken out in turn. The longest
-//! edges come first: what follows is shorter, so this ends. At a border there is no neighbour, and the
-//! triangle is dropped: the border runs along its short edges then, through the same points.
+//! The triangle across its longest edge gets the middle corner instead: p q r becomes p m r and m q
+//! r. Their sum has exactly the edges of the two triangles before, so what was closed stays closed,
+//! whatever else meets there. The neighbour may be without area itself; then its halves are taken
+//! out in turn. The longest edges come first: what follows is shorter, so this ends. At a border
+//! there is no neighbour, and the triangle is dropped: the border runs along its short edges then,
+//! through the same points.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap, HashSet};
@@ -21,7 +22,8 @@ use rayon::prelude::*;
 
 use crate::geom::predicates::projection_axis;
 
-/// The numbers of the triangles without area: two corners are the same vertex, or all lie exactly on a line.
+/// The numbers of the triangles without area: two corners are the same vertex, or all lie exactly
+/// on a line.
 pub(super) fn degenerate(triangles: &[[u32; 3]], vertices: &[[f64; 3]]) -> Vec<u32> {
     (0..triangles.len() as u32)
         .into_par_iter()
@@ -34,8 +36,8 @@ pub(super) fn has_lines(degenerate: &[u32], triangles: &[[u32; 3]], vertices: &[
     degenerate.iter().any(|&t| longest_edge(triangles[t as usize], vertices).is_some())
 }
 
-/// Takes out the triangles with the numbers `degenerate`, which are all that have no area. What remains
-/// keeps its order. Returns how many triangles with an area were split.
+/// Takes out the triangles with the numbers `degenerate`, which are all that have no area. What
+/// remains keeps its order. Returns how many triangles with an area were split.
 pub(super) fn take_out(degenerate: &[u32], triangles: &mut Vec<[u32; 3]>, vertices: &[[f64; 3]]) -> usize {
     let mut pieces = Pieces::new(degenerate, triangles, vertices);
     pieces.straighten();
@@ -69,9 +71,9 @@ fn has_equal([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }
 
-/// The longest edge of a triangle whose corners lie on a line, as the number of the corner where it begins,
-/// and its length along the axis where the line is longest. `None` where no corner is strictly between the
-/// others.
+/// The longest edge of a triangle whose corners lie on a line, as the number of the corner where it
+/// begins, and its length along the axis where the line is longest. `None` where no corner is
+/// strictly between the others.
 fn longest_edge(t: [u32; 3], vertices: &[[f64; 3]]) -> Option<(usize, f64)> {
     if has_equal(t) {
         return None;
@@ -175,8 +177,8 @@ impl<'a> Pieces<'a> {
 
     /// Takes out all pieces without area.
     fn straighten(&mut self) {
-        /// Steps for each piece without area in the beginning. Chains of them take one or two each; only what
-        /// was made to, or is too small for the test on the line, takes more.
+        /// Steps for each piece without area in the beginning. Chains of them take one or two each;
+        /// only what was made to, or is too small for the test on the line, takes more.
         const STEPS: usize = 32;
         let mut steps = STEPS * self.waiting.len();
         while let Some((_, Reverse(number))) = self.waiting.pop() {

@@ -6,14 +6,16 @@ use rayon::prelude::*;
 
 /// For each item the first one with the same key.
 ///
-/// The items are dealt out by hash to shards whose tables stay in the cache of a core, and the shards are
-/// worked off in parallel. Within a shard the items keep their order, so the result does not depend on it.
+/// The items are dealt out by hash to shards whose tables stay in the cache of a core, and the
+/// shards are worked off in parallel. Within a shard the items keep their order, so the result does
+/// not depend on it.
 pub(super) fn first_equal<T: Copy + Sync, K: Copy + Default + Eq + Send + Sync>(
     items: &[T],
     key: impl Fn(T) -> K + Sync,
     hash: impl Fn(&K) -> u64 + Sync,
 ) -> Vec<u32> {
-    /// Items in a shard: a table of this many keys takes about 300 kB, which the second cache level holds.
+    /// Items in a shard: a table of this many keys takes about 300 kB, which the second cache level
+    /// holds.
     const SHARD: usize = 1 << 13;
     /// More shards than this and dealing out, which writes to all of them in turn, becomes slow.
     const MOST_SHARDS: usize = 256;
@@ -60,8 +62,8 @@ pub(super) fn first_equal<T: Copy + Sync, K: Copy + Default + Eq + Send + Sync>(
     first
 }
 
-/// A hash of three words: the halves of each product with an odd constant, folded. Positions of models are
-/// f64 with many zero bits at the end, which the fold spreads over the whole word.
+/// A hash of three words: the halves of each product with an odd constant, folded. Positions of
+/// models are f64 with many zero bits at the end, which the fold spreads over the whole word.
 pub(super) fn hash(words: [u64; 3]) -> u64 {
     /// 2^64 divided by the golden ratio: odd, and no pattern in its bits.
     const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;

@@ -1,4 +1,5 @@
-//! Topology of a mesh: which triangles meet at each edge and vertex, and whether the mesh is closed.
+//! Topology of a mesh: which triangles meet at each edge and vertex, and whether the mesh is
+//! closed.
 //!
 //! Half-edge 3 t + k is edge k of triangle t, from its corner k to its corner k + 1.
 
@@ -10,9 +11,11 @@ use rayon::prelude::*;
 /// Rings of triangles around edges and vertices.
 #[derive(Clone, Debug, Default)]
 pub struct Topology {
-    /// Per half-edge the next half-edge of the same undirected edge, cyclically; itself on a border.
+    /// Per half-edge the next half-edge of the same undirected edge, cyclically; itself on a
+    /// border.
     next_around_edge: Vec<u32>,
-    /// Triangles around vertex v: `vertex_triangles[vertex_start[v]..vertex_start[v + 1]]`, ascending.
+    /// Triangles around vertex v: `vertex_triangles[vertex_start[v]..vertex_start[v + 1]]`,
+    /// ascending.
     vertex_start: Vec<u32>,
     vertex_triangles: Vec<u32>,
     defects: Defects,
@@ -23,8 +26,8 @@ pub struct Topology {
 pub struct Defects {
     /// Edges with one triangle.
     pub boundary_edges: usize,
-    /// Edges that their triangles do not run through equally often in both directions, boundary edges
-    /// not counted.
+    /// Edges that their triangles do not run through equally often in both directions, boundary
+    /// edges not counted.
     pub misoriented_edges: usize,
     /// Edges with more than two triangles.
     pub non_manifold_edges: usize,
@@ -63,8 +66,8 @@ impl Topology {
         &self.defects
     }
 
-    /// The triangles at edge `side` of `triangle`, each with the side it has there, starting with the
-    /// triangle itself.
+    /// The triangles at edge `side` of `triangle`, each with the side it has there, starting with
+    /// the triangle itself.
     pub fn around_edge(&self, triangle: u32, side: Side) -> impl Iterator<Item = (u32, Side)> + '_ {
         let start = 3 * triangle + side.index() as u32;
         std::iter::successors(Some(start), move |&h| {
@@ -145,8 +148,8 @@ fn corners_by_vertex(mesh: &TriMesh) -> (Vec<u32>, Vec<u32>) {
     (start, corners)
 }
 
-/// All half-edges, sorted by their ends, then by number: a counting sort by the lower end, then a sort
-/// of the few that share it.
+/// All half-edges, sorted by their ends, then by number: a counting sort by the lower end, then a
+/// sort of the few that share it.
 fn half_edges_by_lower_vertex(mesh: &TriMesh) -> Vec<HalfEdge> {
     let half_edge = |number: usize| {
         let t = mesh.triangles[number / 3];

@@ -3,8 +3,9 @@
 use super::TriMesh;
 use std::ops::RangeInclusive;
 
-/// The lengths that can be worked with, in model units. Bounds of distances are squared in 32 bits, which hold numbers from
-/// 1e-38 to 3e38: within this range results do not depend on the unit of length, beyond it bounds are lost.
+/// The lengths that can be worked with, in model units. Bounds of distances are squared in 32 bits,
+/// which hold numbers from 1e-38 to 3e38: within this range results do not depend on the unit of
+/// length, beyond it bounds are lost.
 pub const LENGTHS: RangeInclusive<f64> = 1e-18..=1e18;
 
 /// Why a mesh cannot be worked with.
@@ -41,7 +42,8 @@ pub enum MeshError {
 }
 
 impl TriMesh {
-    /// Checks that triangles name vertices that are there, and that the coordinates of all vertices can be worked with.
+    /// Checks that triangles name vertices that are there, and that the coordinates of all vertices
+    /// can be worked with.
     ///
     /// # Errors
     /// The first triangle or vertex that is wrong.

@@ -1,9 +1,9 @@
 //! Triangle intersections over exact rational numbers, as the oracle of the tests.
 //!
 //! The tested code decides by signs of determinants and never computes what two triangles have in
-//! common. The oracle computes exactly that set: it clips one triangle by the plane of the other one
-//! and by its three sides (Sutherland and Hodgman 1974). The two share no code, no predicate and no
-//! case distinction.
+//! common. The oracle computes exactly that set: it clips one triangle by the plane of the other
+//! one and by its three sides (Sutherland and Hodgman 1974). The two share no code, no predicate
+//! and no case distinction.
 
 use num_bigint::BigInt;
 use num_rational::{BigRational, Ratio};
@@ -72,8 +72,8 @@ pub fn volume<T: Exact>(triangle: &[ExactPoint<T>; 3], d: &ExactPoint<T>) -> T {
     dot(&normal(triangle), &difference(d, &triangle[0]))
 }
 
-/// Returns the part of a convex polygon where `height`, an affine function, is not negative. A polygon
-/// of one or two points is a point or a segment.
+/// Returns the part of a convex polygon where `height`, an affine function, is not negative. A
+/// polygon of one or two points is a point or a segment.
 fn clipped<T: Exact>(polygon: &[ExactPoint<T>], height: impl Fn(&ExactPoint<T>) -> T) -> Vec<ExactPoint<T>> {
     let heights: Vec<T> = polygon.iter().map(height).collect();
     let mut part = Vec::new();
@@ -93,8 +93,8 @@ fn clipped<T: Exact>(polygon: &[ExactPoint<T>], height: impl Fn(&ExactPoint<T>) 
     part
 }
 
-/// Returns the corners of the convex set that two closed triangles have in common; none if they do not
-/// meet. The second triangle must have area.
+/// Returns the corners of the convex set that two closed triangles have in common; none if they do
+/// not meet. The second triangle must have area.
 pub fn common_part<T: Exact>(a: &[ExactPoint<T>; 3], b: &[ExactPoint<T>; 3]) -> Vec<ExactPoint<T>> {
     let normal = normal(b);
     let above = |p: &ExactPoint<T>| dot(&normal, &difference(p, &b[0]));
@@ -107,9 +107,9 @@ pub fn common_part<T: Exact>(a: &[ExactPoint<T>; 3], b: &[ExactPoint<T>; 3]) -> 
     part
 }
 
-/// Whether two triangles with area, vertex numbers `va` and `vb` and corners `pa` and `pb`, have a point
-/// in common that is not of a vertex or an edge that they share by number. Triangles that share three
-/// vertices always have.
+/// Whether two triangles with area, vertex numbers `va` and `vb` and corners `pa` and `pb`, have a
+/// point in common that is not of a vertex or an edge that they share by number. Triangles that
+/// share three vertices always have.
 pub fn meet_elsewhere<T: Exact>(
     va: [u32; 3],
     pa: &[ExactPoint<T>; 3],

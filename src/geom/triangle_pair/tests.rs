@@ -37,8 +37,8 @@ fn has_area(t: Corners) -> bool {
     projection_axis(t).is_some()
 }
 
-/// The distance beyond which a point is outside of a triangle of about unit size: rounding errors of
-/// its coordinates.
+/// The distance beyond which a point is outside of a triangle of about unit size: rounding errors
+/// of its coordinates.
 const ROUNDED: f64 = 1e-12;
 
 /// Whether a point is in a triangle, up to rounding.
@@ -51,8 +51,8 @@ fn contains(t: Corners, p: [f64; 3]) -> bool {
     in_plane && sides.all(|(from, to)| normal.cross((to - from).normalize()).dot(p - from) >= -ROUNDED)
 }
 
-/// Asserts that code and oracle say the same of a pair, and of the pair the other way round. Returns
-/// whether the triangles meet.
+/// Asserts that code and oracle say the same of a pair, and of the pair the other way round.
+/// Returns whether the triangles meet.
 fn check<T: Exact>(va: [u32; 3], pa: Corners, vb: [u32; 3], pb: Corners) -> bool {
     let expected = meet_elsewhere(va, &exact::<T>(pa), vb, &exact::<T>(pb));
     let found = meeting_point(va, pa, vb, pb);
@@ -74,8 +74,8 @@ struct Pair {
 }
 
 impl Pair {
-    /// Replaces corners of the second triangle by `shared` corners of the first one, from corner `from`
-    /// to corner `to` on.
+    /// Replaces corners of the second triangle by `shared` corners of the first one, from corner
+    /// `from` to corner `to` on.
     fn new(pa: Corners, mut pb: Corners, shared: usize, (from, to): (usize, usize)) -> Pair {
         let va = [0, 1, 2];
         let mut vb = [3, 4, 5];
@@ -157,8 +157,8 @@ fn triangles_on_a_grid([x, y, z]: [usize; 3]) -> Vec<([usize; 3], Corners)> {
     all
 }
 
-/// Checks all pairs of triangles on a grid: as a mesh numbers them, equal nodes being one vertex, and
-/// as triangles that share no vertex. Returns the number of pairs, and of those that meet.
+/// Checks all pairs of triangles on a grid: as a mesh numbers them, equal nodes being one vertex,
+/// and as triangles that share no vertex. Returns the number of pairs, and of those that meet.
 fn check_all_pairs(grid: [usize; 3]) -> [usize; 2] {
     let triangles = triangles_on_a_grid(grid);
     let check_with_all = |(n, &(nodes, a)): (usize, &([usize; 3], Corners))| {
@@ -207,9 +207,9 @@ fn nudged(x: f64, units: i8) -> f64 {
     (0..units.unsigned_abs()).fold(x, |x, _| if units > 0 { x.next_up() } else { x.next_down() })
 }
 
-/// Pairs whose corners are near to, but mostly not on, the planes and sides that they would be on. No
-/// coordinate is near 0: products of units in its last place would underflow, and predicates are exact
-/// only where they do not.
+/// Pairs whose corners are near to, but mostly not on, the planes and sides that they would be on.
+/// No coordinate is near 0: products of units in its last place would underflow, and predicates are
+/// exact only where they do not.
 fn nearly_degenerate_pairs() -> impl Strategy<Value = Pair> {
     let nudges = || prop::array::uniform3(prop::array::uniform3(-1..=1i8));
     (pairs_on_a_grid(), nudges(), nudges(), 0.1..1.0f64).prop_map(|(pair, na, nb, scale)| {
@@ -233,8 +233,8 @@ fn the_last_bit_of_a_coordinate_decides() {
     let counts = RefCell::new([0; 2]);
     let check_pair = |Pair { va, pa, vb, pb }: Pair| {
         prop_assume!(has_area(pa) && has_area(pb));
-        // The point is not looked at: nearly in a plane, rounding errors are as large as the heights
-        // that it follows from.
+        // The point is not looked at: nearly in a plane, rounding errors are as large as the
+        // heights that it follows from.
         let expected = meet_elsewhere(va, &exact::<BigRational>(pa), vb, &exact(pb));
         for found in [meeting_point(va, pa, vb, pb), meeting_point(vb, pb, va, pa)] {
             assert_eq!(found.is_some(), expected, "{va:?} {pa:?} {vb:?} {pb:?}");

@@ -30,8 +30,8 @@ fn clean_closed(mesh: TriMesh) -> (TriMesh, CleanReport) {
     (cleaned, report)
 }
 
-/// Puts a triangle without area between triangle `t` and its neighbour along the edge from corner `k` on: the neighbour
-/// gets the new vertex `middle`, `t` does not.
+/// Puts a triangle without area between triangle `t` and its neighbour along the edge from corner
+/// `k` on: the neighbour gets the new vertex `middle`, `t` does not.
 fn wedge(mesh: &mut TriMesh, t: usize, k: usize, middle: Point) {
     let corners = mesh.triangles[t];
     let (a, b) = (corners[k], corners[(k + 1) % 3]);
@@ -79,7 +79,8 @@ fn two_triangles_back_to_back_on_one_edge() {
         let mut mesh = tetrahedron();
         let (m, n) = (between(&mesh, 0, 0, first), between(&mesh, 0, 0, second));
         wedge(&mut mesh, 0, 0, m);
-        // The other side of the long edge, which has not moved: between the triangle and the first wedge.
+        // The other side of the long edge, which has not moved: between the triangle and the first
+        // wedge.
         let last = mesh.triangles.len() - 1;
         wedge(&mut mesh, last, 0, n);
         let (cleaned, report) = clean_closed(mesh);
@@ -97,7 +98,8 @@ fn a_chain_along_an_edge() {
         wedge(&mut mesh, 0, 0, middle);
     }
     let (cleaned, report) = clean_closed(mesh);
-    // The second and the third wedge have split the one before them, and the far side lacks their vertices, too.
+    // The second and the third wedge have split the one before them, and the far side lacks their
+    // vertices, too.
     assert_eq!((report.degenerate_triangles, report.split_triangles), (5, 3));
     assert_eq!((cleaned.vertices.len(), cleaned.triangles.len()), (7, 10));
 }
@@ -114,7 +116,8 @@ fn several_edges_of_one_triangle() {
     assert_eq!(cleaned.triangles.len(), 10);
 }
 
-/// Corners that are on a line exactly, which rounding would deny, and a neighbour far thinner than its edge is long.
+/// Corners that are on a line exactly, which rounding would deny, and a neighbour far thinner than
+/// its edge is long.
 #[test]
 fn needles_in_floating_point() {
     let mut mesh = TriMesh {
@@ -197,7 +200,8 @@ proptest! {
         clean_closed(mesh);
     }
 
-    /// Sums of tetrahedra, flat ones and lines among them, on a lattice where corners often lie on a line.
+    /// Sums of tetrahedra, flat ones and lines among them, on a lattice where corners often lie on
+    /// a line.
     #[test]
     fn any_sum_of_tetrahedra(corners in prop::collection::vec(prop::array::uniform4(0u32..27), 1..8)) {
         let vertices = (0..27u8).map(|i| [i % 3, i / 3 % 3, i / 9].map(f64::from)).collect();

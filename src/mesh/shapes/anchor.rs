@@ -24,8 +24,8 @@ pub(super) const VOLUME: f64 = {
     plate + height * PI * ((foot * foot + foot * top + top * top) / 3.0 - BORE * BORE)
 };
 
-/// A plate of 3 x 2 x 0.3 with chamfered corners, four bolt holes, two slots, and a conical boss that a bore
-/// goes through.
+/// A plate of 3 x 2 x 0.3 with chamfered corners, four bolt holes, two slots, and a conical boss
+/// that a bore goes through.
 pub fn anchor(detail: u32) -> TriMesh {
     let mut b = Builder::new(detail);
     let (x, y, thickness, c) = PLATE;

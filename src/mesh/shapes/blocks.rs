@@ -14,8 +14,8 @@ pub fn cube(detail: u32) -> TriMesh {
 /// The radius of the cavity of [`hollow_box`].
 pub(super) const CAVITY_RADIUS: f64 = 0.6;
 
-/// The cube of side 2 with a spherical cavity of radius 0.6 about its centre: two closed surfaces, the inner
-/// one facing inward.
+/// The cube of side 2 with a spherical cavity of radius 0.6 about its centre: two closed surfaces,
+/// the inner one facing inward.
 pub fn hollow_box(detail: u32) -> TriMesh {
     let mut b = Builder::new(detail);
     add_box(&mut b, [-1.0; 3], [1.0; 3]);
@@ -23,7 +23,8 @@ pub fn hollow_box(detail: u32) -> TriMesh {
     b.finish()
 }
 
-/// Half the width of [`wedge`] at its blunt end; its sharp edge has a dihedral angle of 11.4 degrees.
+/// Half the width of [`wedge`] at its blunt end; its sharp edge has a dihedral angle of 11.4
+/// degrees.
 pub(super) const WEDGE_HALF_WIDTH: f64 = 0.2;
 
 /// A wedge of length 2 and depth 2 that ends in a knife edge.
@@ -70,10 +71,12 @@ pub fn fin(detail: u32) -> TriMesh {
     b.finish()
 }
 
-/// Measures of [`bracket`]: the length of its legs, their thickness, its width, and the radius of its holes.
+/// Measures of [`bracket`]: the length of its legs, their thickness, its width, and the radius of
+/// its holes.
 pub(super) const BRACKET: (f64, f64, f64, f64) = (2.0, 0.3, 1.2, 0.25);
 
-/// An L-bracket: two legs 2 long, 0.3 thick and 1.2 wide, each with a hole of radius 0.25 through it.
+/// An L-bracket: two legs 2 long, 0.3 thick and 1.2 wide, each with a hole of radius 0.25 through
+/// it.
 pub fn bracket(detail: u32) -> TriMesh {
     let (leg, t, width, radius) = BRACKET;
     let mut b = Builder::new(detail);
@@ -83,7 +86,8 @@ pub fn bracket(detail: u32) -> TriMesh {
     face(&mut b, &reversed(&near));
     face(&mut b, &far);
     let middle = (0.5 * (leg + t), 0.5 * width);
-    // Circles about the axis of each hole, counter-clockwise about +y and +x, at the outer and inner side.
+    // Circles about the axis of each hole, counter-clockwise about +y and +x, at the outer and
+    // inner side.
     let [down, up] = [0.0, t].map(|y| b.circle([middle.0, y, middle.1], 2, 0, radius));
     let [left, right] = [0.0, t].map(|x| b.circle([x, middle.0, middle.1], 1, 2, radius));
     let holes = [Some(&down), None, Some(&up), Some(&right), None, Some(&left)];
@@ -133,8 +137,8 @@ fn add_box(b: &mut Builder, lo: Point, hi: Point) {
         b.vertex(p)
     };
     let c: Vec<u32> = (0..8).map(|n| corner(b, n)).collect();
-    // Corner n has bit a set where its coordinate a is the larger one. Low left, low right, high left, high
-    // right, seen from outside.
+    // Corner n has bit a set where its coordinate a is the larger one. Low left, low right, high
+    // left, high right, seen from outside.
     for [l, r, hl, hr] in [[0, 4, 2, 6], [5, 1, 7, 3], [1, 0, 3, 2], [4, 5, 6, 7], [0, 1, 4, 5], [3, 2, 7, 6]]
     {
         let low = b.walk(c[l], c[r]);

@@ -1,7 +1,8 @@
 //! Assembles a mesh from patches that share their boundary vertices.
 //!
-//! A patch never makes the vertices of its boundary: it is handed their numbers. Neighbouring patches are
-//! handed the same numbers, so the result is closed by construction and nothing has to be welded.
+//! A patch never makes the vertices of its boundary: it is handed their numbers. Neighbouring
+//! patches are handed the same numbers, so the result is closed by construction and nothing has to
+//! be welded.
 
 use crate::mesh::TriMesh;
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
@@ -16,7 +17,8 @@ pub(super) struct Builder {
     mesh: TriMesh,
     /// Wished length of the triangles' sides, in model units.
     side: f64,
-    /// Interior vertices of the curves between corners, by (smaller, larger) corner, from the smaller on.
+    /// Interior vertices of the curves between corners, by (smaller, larger) corner, from the
+    /// smaller on.
     curves: BTreeMap<(u32, u32), Vec<u32>>,
 }
 
@@ -59,8 +61,8 @@ impl Builder {
         self.mesh.triangles.push([a, b, c]);
     }
 
-    /// Makes the curve between corners `a` and `b` run through `points` (from `a` to `b`, both exclusive).
-    /// Curves that are not made so are straight.
+    /// Makes the curve between corners `a` and `b` run through `points` (from `a` to `b`, both
+    /// exclusive). Curves that are not made so are straight.
     pub fn curve(&mut self, a: u32, b: u32, points: impl IntoIterator<Item = Point>) {
         let mut inner = self.vertices(points);
         if a > b {
@@ -69,8 +71,8 @@ impl Builder {
         self.curves.insert((a.min(b), a.max(b)), inner);
     }
 
-    /// All vertices of the curve from corner `a` to corner `b`, both inclusive. The first call for a pair of
-    /// corners makes a straight curve unless [`curve`](Self::curve) made another before.
+    /// All vertices of the curve from corner `a` to corner `b`, both inclusive. The first call for
+    /// a pair of corners makes a straight curve unless [`curve`](Self::curve) made another before.
     pub fn walk(&mut self, a: u32, b: u32) -> Vec<u32> {
         let key = (a.min(b), a.max(b));
         if !self.curves.contains_key(&key) {
@@ -99,8 +101,8 @@ impl Builder {
         all
     }
 
-    /// A closed loop of vertices around `centre`: at `radius` in the plane of the axes `u` and `v`, running
-    /// from `u` to `v`.
+    /// A closed loop of vertices around `centre`: at `radius` in the plane of the axes `u` and `v`,
+    /// running from `u` to `v`.
     pub fn circle(&mut self, centre: Point, u: usize, v: usize, radius: f64) -> Vec<u32> {
         let n = self.divisions(std::f64::consts::TAU * radius, 12).div_ceil(4) * 4;
         self.circle_of(n, centre, u, v, radius)
@@ -123,8 +125,8 @@ impl Builder {
         self.vertices(points)
     }
 
-    /// A strip of quads between two open rows of equal length; `low` runs to the right of someone who stands
-    /// outside with `high` above.
+    /// A strip of quads between two open rows of equal length; `low` runs to the right of someone
+    /// who stands outside with `high` above.
     pub fn strip(&mut self, low: &[u32], high: &[u32]) {
         assert_eq!(low.len(), high.len(), "the rows of a strip have equal length");
         for (l, h) in low.windows(2).zip(high.windows(2)) {
@@ -133,7 +135,8 @@ impl Builder {
         }
     }
 
-    /// The straight wall between two closed loops of equal length, oriented as in [`strip`](Self::strip).
+    /// The straight wall between two closed loops of equal length, oriented as in
+    /// [`strip`](Self::strip).
     pub fn wall(&mut self, low: &[u32], high: &[u32]) {
         let height = distance(self.position(low[0]), self.position(high[0]));
         let rows = self.divisions(height, 1);
@@ -152,8 +155,8 @@ impl Builder {
         }
     }
 
-    /// The wall that straight lines between the open rows `low` and `high` rule, with the given `left` and
-    /// `right` ends (each from low to high, both inclusive).
+    /// The wall that straight lines between the open rows `low` and `high` rule, with the given
+    /// `left` and `right` ends (each from low to high, both inclusive).
     pub fn ruled(&mut self, low: &[u32], high: &[u32], left: &[u32], right: &[u32]) {
         assert_eq!(left.len(), right.len(), "both ends of a ruled patch have equal length");
         let rows = left.len() - 1;
@@ -175,8 +178,8 @@ impl Builder {
         }
     }
 
-    /// The flat face with the boundary `loops`: the first is the outer one, counter-clockwise seen from
-    /// outside, the others are holes in the other direction.
+    /// The flat face with the boundary `loops`: the first is the outer one, counter-clockwise seen
+    /// from outside, the others are holes in the other direction.
     pub fn flat(&mut self, loops: &[&[u32]]) {
         let normal = self.newell(loops[0]);
         let drop = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(2);
@@ -190,9 +193,9 @@ impl Builder {
         });
     }
 
-    /// A patch that is a graph over the plane across axis `drop`: triangulated in that plane, and each new
-    /// vertex moved onto the surface by `lift`, which must change the coordinate `drop` only. As a graph it
-    /// cannot intersect itself.
+    /// A patch that is a graph over the plane across axis `drop`: triangulated in that plane, and
+    /// each new vertex moved onto the surface by `lift`, which must change the coordinate `drop`
+    /// only. As a graph it cannot intersect itself.
     pub fn lifted(&mut self, loops: &[&[u32]], drop: usize, lift: impl Fn(Point) -> Point) {
         let (u, v) = ((drop + 1) % 3, (drop + 2) % 3);
         let mut ids: Vec<u32> = loops.iter().flat_map(|l| l.iter().copied()).collect();
@@ -225,8 +228,8 @@ impl Builder {
     }
 }
 
-/// Triangulates the region between loops of `points`, with new points behind the given ones, which stay as
-/// they are; triangles are counter-clockwise.
+/// Triangulates the region between loops of `points`, with new points behind the given ones, which
+/// stay as they are; triangles are counter-clockwise.
 fn triangulate(points: Vec<Point2<f64>>, loops: &[&[u32]], side: f64) -> (Vec<Point2<f64>>, Vec<[usize; 3]>) {
     let mut edges = Vec::with_capacity(points.len());
     let mut start = 0;

@@ -109,8 +109,8 @@ impl Corners {
     }
 }
 
-/// The unit direction whose components have the ratio of the sines of `weights` of `n` right angles. With
-/// one weight zero it divides the quarter circle between the other two axes evenly.
+/// The unit direction whose components have the ratio of the sines of `weights` of `n` right
+/// angles. With one weight zero it divides the quarter circle between the other two axes evenly.
 fn octant(n: usize, weights: [usize; 3]) -> Point {
     let d = weights.map(|w| (FRAC_PI_2 * w as f64 / n as f64).sin());
     let length = d.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -151,7 +151,8 @@ fn add_dent(b: &mut Builder, rim: &[u32]) {
 fn add_bite(b: &mut Builder, c: &Corners, n: usize) {
     let [bx, by, bz] = c.bite;
     let (xy, yz, zx) = (b.walk(bx, by), b.walk(by, bz), b.walk(bz, bx));
-    // Row i has weight i on z; it runs from the rim in the plane of x and z to the one in that of y and z.
+    // Row i has weight i on z; it runs from the rim in the plane of x and z to the one in that of y
+    // and z.
     let mut below = xy;
     for i in 1..=n {
         let mut row = vec![zx[n - i]];

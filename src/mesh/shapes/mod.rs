@@ -1,11 +1,12 @@
 //! Generated models, for tests, demonstrations and measurements.
 //!
-//! Each is a function of a level of detail: about that many triangle sides per unit of length (the models
-//! are two to three units long). The same detail gives the same mesh, bit by bit, on one platform.
+//! Each is a function of a level of detail: about that many triangle sides per unit of length (the
+//! models are two to three units long). The same detail gives the same mesh, bit by bit, on one
+//! platform.
 //!
-//! All but [`wave`] are closed: every directed edge occurs exactly once together with its opposite, triangles
-//! are counter-clockwise seen from outside, none is degenerate, and no two intersect. Creases are exact: the
-//! vertices of a crease lie on the curve where the two ideal surfaces meet.
+//! All but [`wave`] are closed: every directed edge occurs exactly once together with its opposite,
+//! triangles are counter-clockwise seen from outside, none is degenerate, and no two intersect.
+//! Creases are exact: the vertices of a crease lie on the curve where the two ideal surfaces meet.
 //!
 //! ```
 //! use exocarp::mesh::{measure, shapes};
@@ -48,7 +49,8 @@ pub struct Shape {
     pub name: &'static str,
     /// What it is, in one line.
     pub about: &'static str,
-    /// Makes the mesh with about this many triangle sides per unit of length; less than 2 counts as 2.
+    /// Makes the mesh with about this many triangle sides per unit of length; less than 2 counts
+    /// as 2.
     pub make: fn(detail: u32) -> TriMesh,
     /// The enclosed volume in cubic units; `None` for an open patch.
     pub volume: Option<Volume>,

@@ -4,22 +4,23 @@ use super::builder::{Builder, Point, add};
 use crate::mesh::TriMesh;
 use std::collections::BTreeMap;
 
-/// The unit sphere about the origin, its vertices on it: an icosahedron with poles on the z axis, each face
-/// divided evenly.
+/// The unit sphere about the origin, its vertices on it: an icosahedron with poles on the z axis,
+/// each face divided evenly.
 pub fn sphere(detail: u32) -> TriMesh {
     let mut b = Builder::new(detail);
     add_sphere(&mut b, [0.0; 3], 1.0, Side::Outward);
     b.finish()
 }
 
-/// Two unit spheres that touch at the origin, in one vertex that both use: an edge-manifold mesh with one
-/// vertex that is not manifold.
+/// Two unit spheres that touch at the origin, in one vertex that both use: an edge-manifold mesh
+/// with one vertex that is not manifold.
 pub fn touching_spheres(detail: u32) -> TriMesh {
     let mut b = Builder::new(detail);
     let lower = add_sphere(&mut b, [0.0, 0.0, -1.0], 1.0, Side::Outward);
     let upper = add_sphere(&mut b, [0.0, 0.0, 1.0], 1.0, Side::Outward);
     let mut mesh = b.finish();
-    // The upper sphere's south pole is the lower one's north pole; the last vertex takes its number.
+    // The upper sphere's south pole is the lower one's north pole; the last vertex takes its
+    // number.
     let (kept, dropped) = (lower.north, upper.south);
     mesh.vertices.swap_remove(dropped as usize);
     let last = mesh.vertices.len() as u32;
@@ -70,7 +71,8 @@ pub(super) fn add_sphere(b: &mut Builder, centre: Point, radius: f64, side: Side
     let n = b.divisions(1.1 * radius, 1) as u32;
     let mut seen: BTreeMap<[(usize, u32); 3], u32> = BTreeMap::new();
     let mut at = |b: &mut Builder, mut weights: [(usize, u32); 3]| {
-        // Named by its corners with weight, in order, a vertex has one name in all faces that share it.
+        // Named by its corners with weight, in order, a vertex has one name in all faces that share
+        // it.
         weights.iter_mut().filter(|w| w.1 == 0).for_each(|w| w.0 = usize::MAX);
         weights.sort_unstable();
         *seen.entry(weights).or_insert_with(|| {
