@@ -4,8 +4,9 @@ import re
 import textwrap
 
 import wrap
+from bench_templates import BENCHMARKS, COMPARE, PAPER
 
-# The cases with pictures: what of the page of `exocarp compare --report` is kept, and what it shows.
+# The cases with pictures: the figures that are kept of the page of `exocarp compare --report`.
 PICTURES = {
     ("carved_cube", "2%", 256): ["section-1"],
     ("fandisk", "2%", 256): ["section-1"],
@@ -19,7 +20,9 @@ TITLES = {
     "meshlib-standard": "MeshLib standard",
     "meshlib-sharp": "MeshLib sharpening",
 }
-CAPTION = "Black is the true offset curve, grey the true solid, wide and coloured the method's outline."
+CAPTION = (
+    "Black is the true offset curve, grey the true solid, wide and coloured the method's outline."
+)
 # Around the figures of README.md.
 FIRST_MARK, LAST_MARK = "<!-- figures: written by make bench-report -->", "<!-- end of figures -->"
 MEGABYTE = 1e6
@@ -37,7 +40,17 @@ def seconds(t):
 
 def error(x):
     """An error in voxels, with two significant digits where it is small."""
-    return "-" if x is None else "0" if x == 0 else f"{x:.4f}" if x < 0.01 else f"{x:.3f}" if x < 1 else f"{x:.2f}"
+    return (
+        "-"
+        if x is None
+        else "0"
+        if x == 0
+        else f"{x:.4f}"
+        if x < 0.01
+        else f"{x:.3f}"
+        if x < 1
+        else f"{x:.2f}"
+    )
 
 
 def megabytes(b):
@@ -56,7 +69,11 @@ def head(data):
     m = data["machine"]
     virtual = ", virtual" if m["virtual"] else ""
     programs = [m["system"], m["rustc"]]
-    programs += [f"{name} {m[key]}" for name, key in (("OpenVDB", "openvdb"), ("MeshLib", "meshlib")) if m[key]]
+    programs += [
+        f"{name} {m[key]}"
+        for name, key in (("OpenVDB", "openvdb"), ("MeshLib", "meshlib"))
+        if m[key]
+    ]
     text = f"- Commit {data['commit']}, {data['date']}, {'a quick run' if data['quick'] else 'a full run'}.\n"
     text += f"- {m['cpu']}{virtual}, {m['cores']} cores, {m['memory']:.0f} GB.\n"
     text += f"- {', '.join(p for p in programs if p)}.\n"
@@ -103,14 +120,22 @@ def peers(data):
             factor = "" if method == "exocarp" else f"{row['engine'] / own['engine']:.1f}x"
             label = f"**{TITLES[method]}**" if method == "exocarp" else TITLES[method]
             first = name if method == "exocarp" else ""
-            cells = [seconds(row["engine"]), factor, megabytes(row["memory"]), count(row["triangles"])]
+            cells = [
+                seconds(row["engine"]),
+                factor,
+                megabytes(row["memory"]),
+                count(row["triangles"]),
+            ]
             times.append([first, label, *cells])
             cells = [error(row["mean"]), error(row["max"]), error(row["missing"]), row["creases"]]
             quality.append([first, label, *cells, count(row["pairs"]), count(row["bad"])])
     columns = ["model, distance, voxels", "method"]
     return (
         table([*columns, "engine, s", "factor", "memory, MB", "triangles"], times),
-        table([*columns, "mean", "max", "missing", "creases, %", "crossing pairs", "non-manifold"], quality),
+        table(
+            [*columns, "mean", "max", "missing", "creases, %", "crossing pairs", "non-manifold"],
+            quality,
+        ),
     )
 
 
@@ -121,7 +146,14 @@ def growth(data):
         parts = [seconds(p.get(name)) for name in ("hierarchy", "band", "edges", "contour")]
         each = 1e6 * r["engine"] / r["triangles"]
         tail = [count(r["triangles"]), f"{each:.2f}", megabytes(r["memory"])]
-        rows.append([f"{r['model']}, {r['distance']}, {r['resolution']}", seconds(r["engine"]), *parts, *tail])
+        rows.append(
+            [
+                f"{r['model']}, {r['distance']}, {r['resolution']}",
+                seconds(r["engine"]),
+                *parts,
+                *tail,
+            ]
+        )
     head = ["model, distance, voxels", "engine, s", "hierarchy", "band", "edges", "contour"]
     return table([*head, "triangles", "us each", "memory, MB"], rows)
 
@@ -139,10 +171,22 @@ def streaming(data):
     s = data["streaming"]
     rows = []
     for r in s["rows"]:
-        cells = [count(r["slabs"]), seconds(r["wall"]), megabytes(r["memory"]), count(r["triangles"])]
+        cells = [
+            count(r["slabs"]),
+            seconds(r["wall"]),
+            megabytes(r["memory"]),
+            count(r["triangles"]),
+        ]
         rows.append([f"{r['model']}, {r['resolution']}, {r['way']}", *cells])
-    same = "The two files are the same, byte for byte." if s["same"] else "**The two files differ.**"
-    return table(["model, voxels, way", "slabs", "command, s", "memory, MB", "triangles"], rows) + "\n" + same + "\n"
+    same = (
+        "The two files are the same, byte for byte." if s["same"] else "**The two files differ.**"
+    )
+    return (
+        table(["model, voxels, way", "slabs", "command, s", "memory, MB", "triangles"], rows)
+        + "\n"
+        + same
+        + "\n"
+    )
 
 
 def noisy(data):
@@ -155,123 +199,41 @@ def noisy(data):
         cells += [seconds(r["phases"]["contour"]), megabytes(r["memory"])]
         cells += [error(quality["distance"]["surface"]["mean"]["voxels"])]
         rows.append([what, *cells, count(quality["intersections"]["pairs"]), count(bad)])
-    columns = ["scan", "triangles", "crossed edges", "jumps", "engine, s", "contour, s", "memory, MB"]
+    columns = [
+        "scan",
+        "triangles",
+        "crossed edges",
+        "jumps",
+        "engine, s",
+        "contour, s",
+        "memory, MB",
+    ]
     return table([*columns, "mean error", "crossing pairs", "bad edges"], rows)
 
 
 def thickening(data):
     rows = []
     for r in data["thickening"]:
-        parts = [seconds(r["phases"].get(n)) for n in ("hierarchy", "nodes", "faces", "boundary", "shape")]
+        parts = [
+            seconds(r["phases"].get(n))
+            for n in ("hierarchy", "nodes", "faces", "boundary", "shape")
+        ]
         name = f"{r['model']}, {r['thickness']}, {r['resolution']}"
         engine = seconds(r["engine"])
-        rows.append([name, count(r["input"]), engine, *parts, count(r["new"]), megabytes(r["memory"])])
-    columns = ["patch, thickness, voxels", "triangles", "engine, s", "hierarchy", "nodes", "faces", "boundary", "shape"]
+        rows.append(
+            [name, count(r["input"]), engine, *parts, count(r["new"]), megabytes(r["memory"])]
+        )
+    columns = [
+        "patch, thickness, voxels",
+        "triangles",
+        "engine, s",
+        "hierarchy",
+        "nodes",
+        "faces",
+        "boundary",
+        "shape",
+    ]
     return table([*columns, "new triangles", "memory, MB"], rows)
-
-
-BENCHMARKS = """# Benchmarks
-
-Written by `make bench-report` from one run; do not edit. `make bench-report QUICK=1` takes ten minutes.
-
-{head}
-Figures of one page may be compared with each other, not with those of another machine or day.
-*Engine* is wall time from the mesh in memory to the offset surface in memory: files are not in it.
-*Memory* is the most that the process had resident. Errors are in voxels, by
-[`exocarp verify`](verify.md): *mean* and *max* of | |distance to the input| - |d| | over the result,
-*missing* the farthest that a point of the true offset surface is from the result, *creases* the share of
-the true creases' length along which the result has an edge. Distances are in percent of the input's
-diagonal, *voxels* those along the longest side of the result (`--resolution`). Models beside the
-generated ones are public test models, found through `EXOCARP_MODELS`.
-
-## Beside the peers
-
-Every method gets the same cleaned mesh, distance, voxel size and threads, and a process of its own for
-each run; the methods take turns. [compare/](compare/README.md) has all columns, and pictures.
-
-```sh
-exocarp compare MODEL -d D --resolution N --runs {runs} --once-above {once} --json figures.json
-```
-
-{times}
-The results judged, all alike:
-
-{quality}
-## How the cost grows
-
-The creases of a model are as many at every resolution, and each is recovered: so a triangle takes less
-time where there are more of them.
-
-```sh
-exocarp offset MODEL -d D --resolution N --threads 2 -o out.ply --stats out.json
-```
-
-{growth}
-## Threads
-
-{threads}
-## In slabs
-
-```sh
-exocarp offset MODEL -d 2% --resolution N --stream --max-memory 500M --threads 2 -o out.ply
-```
-
-{streaming}
-## Noisy scans
-
-A scan as it is, and with each triangle cut into four and a normal deviate of {deviate} of the diagonal
-added to each coordinate (`scripts/noise.py`). The noise folds needles over one another, so the sign by
-pseudonormals is wrong in places: such lattice edges are *jumps*, and no creases are looked for there.
-{single}
-```sh
-exocarp offset SCAN -d 2% --resolution N --sign pseudonormal --threads 2 -o out.ply --stats out.json
-exocarp verify SCAN out.ply -d 2% --sign pseudonormal --json verify.json
-```
-
-{noisy}
-## Thickening
-
-```sh
-exocarp thicken PATCH -t T --resolution N --threads 2 -o solid.ply --stats solid.json
-```
-
-{thickening}
-## Stages
-
-`make bench` times each stage on a generated model. `make instructions OLD=a NEW=b` compares two commits
-by the instructions that a small offset takes: a change of one percent is seen there, whatever else the
-machine does. [design-notes.md](design-notes.md) says what brought how much, and what did not pay.
-"""
-
-COMPARE = """# The same offset with other programs
-
-Written by `make bench-report` from one run; do not edit. `exocarp compare MODEL -d D --report out` makes
-a page like this for one model, with more pictures.
-
-{head}
-- *OpenVDB wide band*: `meshToVolume` with a band of |D| + 3 voxels, `volumeToMesh` at D.
-- *OpenVDB offset*: `meshToVolume` with 3 voxels, `LevelSetFilter::offset` with FIRST_BIAS and TVD_RK1 or
-  HJWENO5_BIAS and TVD_RK3, `volumeToMesh`.
-- *MeshLib*: `generalOffsetMesh`, standard or sharpening, signs from OpenVDB.
-- *Memory* holds what was there before the method began: the program, its libraries and the input, for
-  MeshLib the Python interpreter, too.
-- [benchmarks.md](../benchmarks.md) says what the other columns are.
-
-{cases}"""
-
-PAPER = """# The tables of [LW11], measured here
-
-Written by `make bench-report` from one run, as `exocarp paper --models DIR` prints them; do not edit. The
-paper's figures stand beside ours. Most of its models are not public; each table says what stands for them.
-[design-notes.md](design-notes.md#what-a-close-reading-of-lw11-shows) says what a close reading shows.
-
-{head}
-```text
-{tables}
-```
-
-[LW11]: paper-map.md#lw11-offsets
-"""
 
 
 def compare_case(case, pictures):
@@ -291,12 +253,38 @@ def compare_case(case, pictures):
         edges = phases.get("edges", phases.get("offset"))
         once = " (once)" if row["runs"] < result["runs"] else ""
         cells = [seconds(phases.get("hierarchy")), seconds(phases.get("band")), seconds(edges)]
-        cells += [seconds(phases.get("contour")), seconds(row["engine"]) + once, megabytes(row["memory"])]
-        cells += [count(row["active"]), count(row["triangles"]), error(row["mean"]), error(row["max"])]
+        cells += [
+            seconds(phases.get("contour")),
+            seconds(row["engine"]) + once,
+            megabytes(row["memory"]),
+        ]
+        cells += [
+            count(row["active"]),
+            count(row["triangles"]),
+            error(row["mean"]),
+            error(row["max"]),
+        ]
         cells += [error(row["missing"]), row["creases"], count(row["pairs"]), count(row["bad"])]
         rows.append([f"**{title}**" if r["method"] == "exocarp" else title, *cells])
-    columns = ["method", "hierarchy, s", "band, s", "edges / offset, s", "contour, s", "engine, s", "memory, MB"]
-    columns += ["active voxels", "triangles", "mean", "max", "missing", "creases, %", "crossing pairs", "non-manifold"]
+    columns = [
+        "method",
+        "hierarchy, s",
+        "band, s",
+        "edges / offset, s",
+        "contour, s",
+        "engine, s",
+        "memory, MB",
+    ]
+    columns += [
+        "active voxels",
+        "triangles",
+        "mean",
+        "max",
+        "missing",
+        "creases, %",
+        "crossing pairs",
+        "non-manifold",
+    ]
     text += table(columns, rows)
     for name, title in pictures:
         text += f"\n*{title[0].upper() + title[1:]}.* {CAPTION}\n\n![{title}]({name})\n"
@@ -304,7 +292,7 @@ def compare_case(case, pictures):
 
 
 def pictures(case, directory):
-    """The cross-sections of a report that are kept, as one picture each, with the methods side by side."""
+    """The cross-sections of a report that are kept, a picture each, the methods side by side."""
     key = (case["model"], case["distance"], 256)
     try:
         page = open(case["report"]).read() if key in PICTURES else ""
@@ -316,7 +304,11 @@ def pictures(case, directory):
         found = re.search(rf'<figure id="fig-{figure}">(.*?)</figure>', page, re.S)
         if not found:
             continue
-        panels = re.findall(r'<svg viewBox="0 0 ([\d.]+) ([\d.]+)".*?aria-label="(.*?) at: .*?>(.*?)</svg>', found[1], re.S)
+        panels = re.findall(
+            r'<svg viewBox="0 0 ([\d.]+) ([\d.]+)".*?aria-label="(.*?) at: .*?>(.*?)</svg>',
+            found[1],
+            re.S,
+        )
         title = re.search(r"<h2>(.*?)</h2>", found[1])[1]
         name = f"{case['model']}{case['distance'].replace('%', '').replace('-', '-minus-')}-{figure}.svg"
         (directory / name).write_text(joined(panels, style[1] if style else ""))
@@ -334,9 +326,13 @@ def joined(panels, style):
     for k, (_, _, title, content) in enumerate(panels):
         x, y = (k % columns) * (width + GAP), (k // columns) * (height + FOOT)
         body = re.sub(r'd="([^"]*)"', lambda d: f'd="{seen(d[1], width, height)}"', content)
-        parts.append(f'<svg x="{x:g}" y="{y:g}" width="{width:g}" height="{height:g}" viewBox="0 0 {width:g} {height:g}">{body}</svg>')
+        parts.append(
+            f'<svg x="{x:g}" y="{y:g}" width="{width:g}" height="{height:g}" viewBox="0 0 {width:g} {height:g}">{body}</svg>'
+        )
         parts.append(f'<text x="{x:g}" y="{y + height + 18:g}" class="name">{title}</text>')
-    own = "\n".join(rule for rule in style.split("\n") if re.match(r"\.(name|scale|tick|value|faint)\b", rule))
+    own = "\n".join(
+        rule for rule in style.split("\n") if re.match(r"\.(name|scale|tick|value|faint)\b", rule)
+    )
     view = f'viewBox="0 0 {size[0]:g} {size[1]:g}" width="{size[0]:g}"'
     font = 'font-family="Liberation Sans, Arial, sans-serif"'
     return f'<svg xmlns="http://www.w3.org/2000/svg" {view} {font}><style>{own}</style>{"".join(parts)}</svg>\n'
@@ -384,12 +380,13 @@ def write_figures(data, path):
 
 
 def save(path, text):
-    """Writes a page, wrapped as all prose is."""
+    """Writes a page, wrapped as all prose is, without a blank line after another."""
+    text = re.sub(r"\n{3,}", "\n\n", text)
     path.write_text("\n".join(wrap.wrapped(text.split("\n"), wrap.WIDTH)))
 
 
 def write(data, docs):
-    """Writes both pages, and the pictures of the second."""
+    """Writes all pages, and the pictures of the comparison."""
     docs.mkdir(parents=True, exist_ok=True)
     times, quality = peers(data)
     text = BENCHMARKS.format(
@@ -403,7 +400,7 @@ def write(data, docs):
         streaming=streaming(data),
         noisy=noisy(data),
         deviate="2e-5",
-        single="One run each.\n" if data["quick"] else "",
+        single="One run each." if data["quick"] else "",
         thickening=thickening(data),
     )
     save(docs / "benchmarks.md", text)

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Measures the engine and its peers; writes docs/benchmarks.md, docs/compare and the figures of README.md.
+"""Measures the engine and its peers, and writes docs/benchmarks.md and the pages beside it.
 
-    make bench-report                        all models and peers, about an hour; QUICK=1: ten minutes
+    make bench-report                        all models and peers; QUICK=1: ten minutes
     python3 scripts/bench_report.py --help   the options
 
-Everything comes from one build on one machine, which the head of each page names. Results of a step are kept
-in --work, by commit, so that a run that was interrupted goes on; --again measures anew. Needs Python 3 and
-nothing else; MeshLib is compared if --python names an interpreter that can import it.
+Everything comes from one build on one machine, which the head of each page names. Results of a step
+are kept in --work, by commit, so that a run that was interrupted goes on; --again measures anew.
+The pages are docs/benchmarks.md, docs/compare, docs/paper-tables.md and the figures of README.md.
+Needs Python 3 and nothing else; MeshLib is compared if --python can import it.
 """
 
 import argparse
@@ -23,7 +24,7 @@ import noise
 
 # The peers of a quick run: the quickest way of OpenVDB, and the only way that has creases.
 QUICK_METHODS = "exocarp,openvdb-wide,meshlib-sharp"
-# A method that takes longer than this, in seconds, runs once: its scatter is small beside its distance.
+# A method that takes longer than this, in seconds, runs once: its scatter is small enough.
 ONCE_ABOVE = {True: "5", False: "25"}
 # Distances of the table of costs at one resolution, besides those of all resolutions.
 DISTANCES = ["1%", "4%", "8%", "16%", "32%"]
@@ -68,9 +69,13 @@ class Bench:
 
     def command(self, *arguments):
         """Runs the program; what it says on stderr is shown when it fails."""
-        done = subprocess.run([self.program, *map(str, arguments)], cwd=self.work, capture_output=True, text=True)
+        done = subprocess.run(
+            [self.program, *map(str, arguments)], cwd=self.work, capture_output=True, text=True
+        )
         if done.returncode not in (0, 6):
-            raise SystemExit(f"bench_report: {' '.join(map(str, arguments))}: {done.stderr.strip()}")
+            raise SystemExit(
+                f"bench_report: {' '.join(map(str, arguments))}: {done.stderr.strip()}"
+            )
 
     def timed(self, *arguments, runs=None):
         """Medians of a command that writes statistics."""
@@ -83,17 +88,30 @@ class Bench:
 
 def commit():
     """The commit that is measured, and whether the tree differs from it."""
-    git = lambda *words: subprocess.run(["git", *words], capture_output=True, text=True).stdout.strip()
-    changed = git("status", "--porcelain", "--untracked-files=no", "--", "src", "cpp", "Cargo.toml", "Cargo.lock")
+    git = lambda *words: subprocess.run(
+        ["git", *words], capture_output=True, text=True
+    ).stdout.strip()
+    changed = git(
+        "status",
+        "--porcelain",
+        "--untracked-files=no",
+        "--",
+        "src",
+        "cpp",
+        "Cargo.toml",
+        "Cargo.lock",
+    )
     return (git("rev-parse", "--short=10", "HEAD") or "unknown") + (" changed" if changed else "")
 
 
 def median(found):
-    """What the tables need of several runs: the medians of times and memory, and counts of the last run."""
+    """The medians of times and memory over several runs, and counts of the last run."""
     middle = lambda value: statistics.median(value(f) for f in found)
     last = found[-1]
     phases = {name: middle(lambda f, name=name: f["phases"][name]) for name in last["phases"]}
-    engine = lambda f: sum(t for name, t in f["phases"].items() if name not in ("load", "clean", "write"))
+    engine = lambda f: sum(
+        t for name, t in f["phases"].items() if name not in ("load", "clean", "write")
+    )
     contour = last.get("contour") or {}
     return {
         "phases": phases,
@@ -124,7 +142,9 @@ def line(*command):
 def machine(options):
     """Facts of the machine by which times are read; nothing that names it."""
     read = lambda path: Path(path).read_text() if Path(path).exists() else ""
-    value = lambda text, key, by: next((l.split(by, 1)[1].strip() for l in text.splitlines() if l.startswith(key)), "")
+    value = lambda text, key, by: next(
+        (l.split(by, 1)[1].strip() for l in text.splitlines() if l.startswith(key)), ""
+    )
     memory = value(read("/proc/meminfo"), "MemTotal", ":").split(" ")[0]
     meshlib = "import importlib.metadata as m; print(m.version('meshlib'))"
     return {
@@ -141,13 +161,18 @@ def machine(options):
 
 
 def peers(bench):
-    """The same offset with other programs: by `exocarp compare`, which takes turns and judges all."""
+    """Offsets beside other programs, by `exocarp compare`, which takes turns and judges all."""
     cases = [("carved_cube", "2%", 256), ("fandisk", "2%", 256), ("fandisk", "-2%", 256)]
     cases += [("armadillo", "2%", 256), ("armadillo", "-2%", 256)]
     cases += [("fandisk", "2%", 512), ("armadillo", "2%", 512)]
     if not bench.small:
         cases += [("fandisk", "-2%", 512), ("armadillo", "-2%", 512)]
-        cases += [(name, d, n) for name in ("rocker-arm", "anchor_dense") for d in ("2%", "-2%") for n in (256, 512)]
+        cases += [
+            (name, d, n)
+            for name in ("rocker-arm", "anchor_dense")
+            for d in ("2%", "-2%")
+            for n in (256, 512)
+        ]
     if bench.options.tiny:
         cases = [("carved_cube", "2%", 256), ("anchor", "-2%", 256)]
     found = []
@@ -156,8 +181,21 @@ def peers(bench):
         if not model:
             continue
         step = f"compare-{name}{distance.strip('%')}-{resolution}"
-        options = ["--distance=" + distance, "--resolution", bench.scaled(resolution), "--runs", bench.runs]
-        options += ["--once-above", ONCE_ABOVE[bench.small], "--python", bench.options.python, "--threads", 2]
+        options = [
+            "--distance=" + distance,
+            "--resolution",
+            bench.scaled(resolution),
+            "--runs",
+            bench.runs,
+        ]
+        options += [
+            "--once-above",
+            ONCE_ABOVE[bench.small],
+            "--python",
+            bench.options.python,
+            "--threads",
+            2,
+        ]
         if bench.small:
             options += ["--methods", QUICK_METHODS]
         if (name, distance, resolution) in bench_pages.PICTURES:
@@ -168,7 +206,14 @@ def peers(bench):
             return json.loads((bench.work / f"{step}-all.json").read_text())
 
         result = bench.kept(step, make)
-        found.append({"model": name, "distance": distance, "resolution": bench.scaled(resolution), "result": result})
+        found.append(
+            {
+                "model": name,
+                "distance": distance,
+                "resolution": bench.scaled(resolution),
+                "result": result,
+            }
+        )
         found[-1]["report"] = str(bench.work / step / "index.html")
     return found
 
@@ -180,10 +225,18 @@ def growth(bench):
     cases = [("2%", n) for n in resolutions] + [(d, 512) for d in DISTANCES]
     rows = []
     for distance, resolution in cases:
-        options = ["--distance=" + distance, "--resolution", bench.scaled(resolution), "--threads", 2]
+        options = [
+            "--distance=" + distance,
+            "--resolution",
+            bench.scaled(resolution),
+            "--threads",
+            2,
+        ]
         make = lambda: bench.timed("offset", bench.model(name), *options, "-o", "out.ply")
         row = bench.kept(f"growth{distance.strip('%')}-{resolution}", make)
-        rows.append({"model": name, "distance": distance, "resolution": bench.scaled(resolution), **row})
+        rows.append(
+            {"model": name, "distance": distance, "resolution": bench.scaled(resolution), **row}
+        )
     return rows
 
 
@@ -193,14 +246,31 @@ def streaming(bench):
     resolution = bench.scaled(1024)
     rows = []
     for way, options in [("at once", []), ("in slabs", ["--stream", "--max-memory", "500M"])]:
-        options = [bench.model(name), "--distance=2%", "--resolution", resolution, "--threads", 2, *options]
+        options = [
+            bench.model(name),
+            "--distance=2%",
+            "--resolution",
+            resolution,
+            "--threads",
+            2,
+            *options,
+        ]
         output = f"{way.replace(' ', '-')}.ply"
 
         def make(options=options, output=output):
             return bench.timed("offset", *options, "-o", output)
 
-        rows.append({"model": name, "way": way, "resolution": resolution, **bench.kept(f"stream-{output}", make)})
-    same = lambda: (bench.work / "at-once.ply").read_bytes() == (bench.work / "in-slabs.ply").read_bytes()
+        rows.append(
+            {
+                "model": name,
+                "way": way,
+                "resolution": resolution,
+                **bench.kept(f"stream-{output}", make),
+            }
+        )
+    same = lambda: (
+        (bench.work / "at-once.ply").read_bytes() == (bench.work / "in-slabs.ply").read_bytes()
+    )
     return {"rows": rows, "same": bench.kept("stream-same", same)}
 
 
@@ -212,17 +282,26 @@ def threads(bench):
         if not model:
             continue
         for count in (1, 2):
-            options = [model, "--distance=2%", "--resolution", bench.scaled(512), "--threads", count]
+            options = [
+                model,
+                "--distance=2%",
+                "--resolution",
+                bench.scaled(512),
+                "--threads",
+                count,
+            ]
             output = f"threads-{name}-{count}.ply"
             make = lambda: bench.timed("offset", *options, "-o", output)
-            rows.append({"model": name, "threads": count, **bench.kept(f"threads-{name}-{count}", make)})
+            rows.append(
+                {"model": name, "threads": count, **bench.kept(f"threads-{name}-{count}", make)}
+            )
         read = lambda count: (bench.work / f"threads-{name}-{count}.ply").read_bytes()
         rows[-1]["same"] = bench.kept(f"threads-{name}-same", lambda: read(1) == read(2))
     return rows
 
 
 def noisy(bench):
-    """A scan as it is, and cut finer with noise on each coordinate, which folds its needles over one another."""
+    """A scan as it is, and cut finer with noise that folds its needles over one another."""
     name = "carved_cube" if bench.options.tiny else "dragon"
     model = bench.model(name)
     rows = []
@@ -235,13 +314,17 @@ def noisy(bench):
                 noise.write(Path(model), path, cuts)
             options = ["--distance=2%", "--sign", "pseudonormal"]
             more = ["--resolution", bench.scaled(512), "--threads", 2]
-            row = bench.timed("offset", path, *options, *more, "-o", "out.ply", runs=1 if bench.small else None)
+            row = bench.timed(
+                "offset", path, *options, *more, "-o", "out.ply", runs=1 if bench.small else None
+            )
             judge = ["--voxel", row["voxel"], "--quiet", "--json", "verify.json"]
             bench.command("verify", path, "out.ply", *options, *judge)
             row["report"] = json.loads((bench.work / "verify.json").read_text())
             return row
 
-        rows.append({"model": name, "cuts": cuts, "resolution": bench.scaled(512), **bench.kept(step, make)})
+        rows.append(
+            {"model": name, "cuts": cuts, "resolution": bench.scaled(512), **bench.kept(step, make)}
+        )
     return rows
 
 
@@ -256,8 +339,15 @@ def thickening(bench):
         if not model:
             continue
         for resolution in (128, 256):
-            options = ["-t", thickness, "--resolution", bench.scaled(resolution) * (4 if bench.options.tiny else 1)]
-            make = lambda: bench.timed("thicken", model, *options, "--threads", 2, "-o", "solid.ply")
+            options = [
+                "-t",
+                thickness,
+                "--resolution",
+                bench.scaled(resolution) * (4 if bench.options.tiny else 1),
+            ]
+            make = lambda: bench.timed(
+                "thicken", model, *options, "--threads", 2, "-o", "solid.ply"
+            )
             row = bench.kept(f"thicken-{name}-{resolution}", make)
             rows.append({"model": name, "thickness": thickness, "resolution": resolution, **row})
     return rows
@@ -277,15 +367,31 @@ def paper(bench):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", default="target/release/exocarp", help="the program to measure")
-    parser.add_argument("--models", default=os.environ.get("EXOCARP_MODELS"), help="a directory with fandisk, armadillo, ...")
-    parser.add_argument("--python", default="python3", help="an interpreter that can import meshlib")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "--program", default="target/release/exocarp", help="the program to measure"
+    )
+    parser.add_argument(
+        "--models",
+        default=os.environ.get("EXOCARP_MODELS"),
+        help="a directory with fandisk, armadillo, ...",
+    )
+    parser.add_argument(
+        "--python", default="python3", help="an interpreter that can import meshlib"
+    )
     parser.add_argument("--work", default="out/bench", help="where results are kept, by commit")
     parser.add_argument("--docs", default="docs", help="where the pages go")
-    parser.add_argument("--readme", default="README.md", help="where the figures go; nowhere if empty")
-    parser.add_argument("--quick", action="store_true", help="fewer cases and peers: within ten minutes")
-    parser.add_argument("--tiny", action="store_true", help="a test of this script; the figures mean nothing")
+    parser.add_argument(
+        "--readme", default="README.md", help="where the figures go; nowhere if empty"
+    )
+    parser.add_argument(
+        "--quick", action="store_true", help="fewer cases and peers: within ten minutes"
+    )
+    parser.add_argument(
+        "--tiny", action="store_true", help="a test of this script; the figures mean nothing"
+    )
     parser.add_argument("--again", action="store_true", help="measure anew what is kept")
     options = parser.parse_args()
     bench = Bench(options)

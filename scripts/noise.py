@@ -1,11 +1,11 @@
-"""Noisy scans for the benchmarks: each triangle of a model cut into four, and noise on each coordinate."""
+"""Noisy scans for the benchmarks: models with finer triangles and noise on each coordinate."""
 
 import random
 import struct
 from array import array
 
-# The normal deviate of a coordinate, in diagonals. An eightieth of a voxel at resolution 512, it folds the
-# needles of a fine scan over one another, which is what makes noisy scans hard.
+# The normal deviate of a coordinate, in diagonals. An eightieth of a voxel at resolution 512, it
+# folds the needles of a fine scan over one another, which is what makes noisy scans hard.
 DEVIATE = 2e-5
 SEED = 1
 
@@ -16,9 +16,13 @@ def read(path):
     if path.suffix == ".obj":
         lines = [line.split() for line in data.decode().splitlines()]
         positions = [tuple(map(float, w[1:4])) for w in lines if w and w[0] == "v"]
-        return positions, [tuple(int(c.split("/")[0]) - 1 for c in w[1:4]) for w in lines if w and w[0] == "f"]
+        return positions, [
+            tuple(int(c.split("/")[0]) - 1 for c in w[1:4]) for w in lines if w and w[0] == "f"
+        ]
     end = data.index(b"end_header\n") + len(b"end_header\n")
-    vertices, faces = (int(l.split()[2]) for l in data[:end].decode().splitlines() if l.startswith("element"))
+    vertices, faces = (
+        int(l.split()[2]) for l in data[:end].decode().splitlines() if l.startswith("element")
+    )
     form = "<3d" if b"property double x" in data[:end] else "<3f"
     middle = end + vertices * struct.calcsize(form)
     positions = list(struct.iter_unpack(form, data[end:middle]))
@@ -53,7 +57,7 @@ def cut(positions, triangles):
 
 
 def write(model, path, cuts, deviate=DEVIATE):
-    """Writes `model` to the PLY file `path`, cut `cuts` times, with noise of `deviate` diagonals."""
+    """Writes `model` as PLY to `path`, cut `cuts` times, with noise of `deviate` diagonals."""
     positions, triangles = weld(*read(model))
     for _ in range(cuts):
         triangles = cut(positions, triangles)

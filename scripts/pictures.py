@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Renders the pictures of README.md and docs/thicken.md: make pictures.
 
-The meshes come from the program, the pixels from a small rasteriser below: parallel projection, a depth buffer,
-one light from the camera's shoulder, and dark lines along creases. Needs Python 3 and nothing else.
+The meshes come from the program, the pixels from a small rasteriser below: parallel projection, a
+depth buffer, one light from the camera's shoulder, and dark lines along creases. Needs Python 3 and
+nothing else.
 """
 
 import argparse
@@ -25,7 +26,13 @@ CREASE = 35.0
 # Twice a triangle's area by the square of its longest side, below which it counts as a sliver.
 SLIVER = 0.2
 # The colours of surfaces, of their backs, and of lines.
-GREY, AMBER, BLUE, BACK, LINE = (196, 202, 210), (236, 178, 96), (126, 178, 222), (214, 120, 100), (40, 44, 52)
+GREY, AMBER, BLUE, BACK, LINE = (
+    (196, 202, 210),
+    (236, 178, 96),
+    (126, 178, 222),
+    (214, 120, 100),
+    (40, 44, 52),
+)
 WHITE = (255, 255, 255)
 # Steps of brightness: few make small files.
 STEPS = 40
@@ -62,7 +69,11 @@ class Camera:
         """Column, row and height of a point."""
         q = sub(p, self.middle)
         half = 0.5 * self.size
-        return (half + self.scale * dot(q, self.x), half - self.scale * dot(q, self.y), self.scale * dot(q, self.z))
+        return (
+            half + self.scale * dot(q, self.x),
+            half - self.scale * dot(q, self.y),
+            self.scale * dot(q, self.z),
+        )
 
 
 def normals(positions, triangles):
@@ -104,14 +115,21 @@ def draw(mesh, colour, camera):
     colours = [WHITE] * (size * size)
     normal = normals(positions, triangles)
     points = [camera.sees(p) for p in positions]
-    light = unit(tuple(sum(LIGHT[k] * axis[i] for k, axis in enumerate((camera.x, camera.y, camera.z))) for i in range(3)))
+    light = unit(
+        tuple(
+            sum(LIGHT[k] * axis[i] for k, axis in enumerate((camera.x, camera.y, camera.z)))
+            for i in range(3)
+        )
+    )
     for corners, n in zip(triangles, normal):
         front = dot(n, camera.z) >= 0.0
         towards = n if front else (-n[0], -n[1], -n[2])
         bright = 0.30 + 0.55 * max(dot(towards, light), 0.0) + 0.17 * dot(towards, camera.z)
         bright = round(min(bright, 1.0) * STEPS) / STEPS
         shade = tuple(int(c * bright) for c in (colour if front else BACK))
-        fill(points[corners[0]], points[corners[1]], points[corners[2]], shade, size, depth, colours)
+        fill(
+            points[corners[0]], points[corners[1]], points[corners[2]], shade, size, depth, colours
+        )
     for a, b in creases(positions, triangles, normal):
         stroke(points[a], points[b], size, depth, colours)
     return colours
@@ -139,7 +157,7 @@ def fill(a, b, c, shade, size, depth, colours):
 
 
 def stroke(a, b, size, depth, colours):
-    """Draws a line where nothing is in front of it; it lies on the surface, so two samples in front do not count."""
+    """Draws a line where nothing is more than two samples in front of it: it is on the surface."""
     steps = max(int(2.0 * max(abs(b[0] - a[0]), abs(b[1] - a[1]))), 1)
     for k in range(steps + 1):
         t = k / steps
@@ -157,8 +175,17 @@ def pixels(colours):
     for row in range(SIDE):
         line = []
         for column in range(SIDE):
-            at = [(row * SAMPLES + i) * size + column * SAMPLES + j for i in range(SAMPLES) for j in range(SAMPLES)]
-            line.append(tuple(min(sum(colours[k][c] for k in at) // len(at) + 2, 255) // 4 * 4 + 3 for c in range(3)))
+            at = [
+                (row * SAMPLES + i) * size + column * SAMPLES + j
+                for i in range(SAMPLES)
+                for j in range(SAMPLES)
+            ]
+            line.append(
+                tuple(
+                    min(sum(colours[k][c] for k in at) // len(at) + 2, 255) // 4 * 4 + 3
+                    for c in range(3)
+                )
+            )
         rows.append(line)
     return rows
 
@@ -167,9 +194,16 @@ def png(panels):
     """Panels side by side as PNG."""
     rows = [sum((panel[row] for panel in panels), []) for row in range(SIDE)]
     raw = b"".join(b"\0" + bytes(c for pixel in row for c in pixel) for row in rows)
-    chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    chunk = lambda kind, data: (
+        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    )
     head = struct.pack(">IIBBBBB", SIDE * len(panels), SIDE, 8, 2, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(raw, 9)) + chunk(b"IEND", b"")
+    return (
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", head)
+        + chunk(b"IDAT", zlib.compress(raw, 9))
+        + chunk(b"IEND", b"")
+    )
 
 
 def around(meshes, towards, up=UP):
@@ -185,14 +219,20 @@ def around(meshes, towards, up=UP):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", default="target/release/exocarp", help="the program that makes the meshes")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "--program", default="target/release/exocarp", help="the program that makes the meshes"
+    )
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as directory:
 
         def made(*arguments):
             path = Path(directory) / f"{len(list(Path(directory).iterdir()))}.ply"
-            subprocess.run([options.program, *map(str, arguments), "-o", path, "--quiet"], check=True)
+            subprocess.run(
+                [options.program, *map(str, arguments), "-o", path, "--quiet"], check=True
+            )
             return path, noise.read(path)
 
         path, cube = made("model", "carved_cube")

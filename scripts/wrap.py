@@ -3,8 +3,9 @@
 
     python3 scripts/wrap.py README.md src/io      files, or directories with all in them
 
-A paragraph is wrapped anew where one of its lines is too long; all others stay as they are. Code, tables,
-headings, pictures in text and comments behind code are left alone. tests/prose.rs checks the width.
+A paragraph is wrapped anew where one of its lines is too long; all others stay as they are. Code,
+tables, headings, pictures in text and comments behind code are left alone. tests/prose.rs checks
+the width.
 """
 
 import re
@@ -13,7 +14,7 @@ import textwrap
 from pathlib import Path
 
 WIDTH = 100
-# What would begin a list, a quote or a heading at the start of a line stays behind the word before it.
+# A word that would begin a list or a heading at the start of a line stays behind its predecessor.
 MARKER = re.compile(r"^([-+*#>=|]+|\d+[.)])$")
 # Rows of tables, headings, pictures, HTML, quotes, and the targets of links.
 LEFT_ALONE = re.compile(r"^\|.*\|$|^#+ |^!\[|^<|^>|^\[[^]]*\]: \S+$")
