@@ -14,7 +14,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::{Mutex, PoisonError};
 
-/// What band to build.
+/// The band to build.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandSettings {
     /// The lattice.
@@ -42,21 +42,23 @@ pub fn grid_nodes(bounds: Aabb, settings: &BandSettings) -> [Ijk; 2] {
     [Ijk(bounds.lo.to_array().map(|x| index(x) - 1)), Ijk(bounds.hi.to_array().map(|x| index(x) + 1))]
 }
 
-/// Bounding boxes along the grid's longest side. More: queries at their centres are wasted. Fewer: the
-/// octree starts higher and there are fewer tasks to share out among the threads.
+/// Bounding boxes along the grid's longest side. More: queries at their centres are wasted. Fewer:
+/// the octree starts higher and there are fewer tasks to share out among the threads.
 const BOXES_ALONG_AXIS: i32 = 8;
 
-/// Nodes nearer to the offset surface than this, in voxels, are on it, and so outside. A face of the offset
-/// often lies in a plane of nodes (with a resolution instead of a voxel size, a model centred at the origin
-/// always has one there). Rounding would give these nodes signs at random, and the surface would zigzag
-/// between two layers of cells. Far below the tolerance of edge intersections.
+/// Distance from the offset surface, in voxels, below which a node is on it, and so outside. A face
+/// of the offset often lies in a plane of nodes (with a resolution instead of a voxel size, a model
+/// centred at the origin always has one there). Rounding would give these nodes signs at random,
+/// and the surface would zigzag between two layers of cells. Far below the tolerance of edge
+/// intersections.
 const ON_SURFACE: f64 = 1e-9;
 
-/// Bounding boxes worked off together at most, for a band whose leaves are handed on as they are: those of two such batches
-/// are in memory at a time.
+/// Bounding boxes worked off together at most, for a band whose leaves are handed on as they are:
+/// those of two such batches are in memory at a time.
 pub const BOXES_PER_BATCH: usize = 64;
 
-/// Builds the band around the offset surface and hands it, batch by batch in a fixed order, to `sink`.
+/// Builds the band around the offset surface and hands it, batch by batch in a fixed order, to
+/// `sink`.
 ///
 /// # Errors
 /// Cancellation, or what `sink` returns.
@@ -66,28 +68,30 @@ pub fn build<E: From<Cancelled> + Send>(
     run: &RunSettings,
     sink: impl FnMut(LeafBatch) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
-    build_kept(distance, settings, BOXES_PER_BATCH, run, LeafBatch::clone, sink)
+    build_map(distance, settings, BOXES_PER_BATCH, run, LeafBatch::clone, sink)
 }
 
-/// The same as [`build`], where `sink` gets what `keep` makes of each batch, on the thread that has filled it. The batch
-/// itself is filled again. After `at_a_time` boxes the threads wait for each other.
+/// Builds the band as [`build`] does, but maps each batch with `map` on the worker thread before it
+/// reaches `sink`, so that the batch's memory is used again. At most `boxes_in_flight` boxes are
+/// worked off before all threads wait for each other.
 ///
 /// # Errors
 /// Cancellation, or what `sink` returns.
-pub fn build_kept<T: Send, E: From<Cancelled> + Send>(
+pub fn build_map<T: Send, E: From<Cancelled> + Send>(
     distance: &SignedDistance,
     settings: &BandSettings,
-    at_a_time: usize,
+    boxes_in_flight: usize,
     run: &RunSettings,
-    keep: impl Fn(&LeafBatch) -> T + Sync,
+    map: impl Fn(&LeafBatch) -> T + Sync,
     sink: impl FnMut(T) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
     let plan = Plan::new(distance, settings, &FilterSettings::default());
-    build_with(plan, settings, SignedBand, at_a_time, run, keep, sink)
+    build_with(plan, settings, SignedBand, boxes_in_flight, run, map, sink)
 }
 
-/// The same as [`build`] with some filters off, or other bounding boxes. Leaves and their values are the
-/// same for closed input; only the blocks between the leaves are cut differently.
+/// Builds the band as [`build`] does, with some filters off or other bounding boxes. For closed
+/// input the leaves and their values do not change; only the blocks between the leaves are divided
+/// differently.
 ///
 /// # Errors
 /// Cancellation, or what `sink` returns.
@@ -109,9 +113,9 @@ fn build_with<T: Send, E: From<Cancelled> + Send>(
     plan: Plan<'_>,
     settings: &BandSettings,
     policy: impl LeafPolicy,
-    at_a_time: usize,
+    boxes_in_flight: usize,
     run: &RunSettings,
-    keep: impl Fn(&LeafBatch) -> T + Sync,
+    map: impl Fn(&LeafBatch) -> T + Sync,
     mut sink: impl FnMut(T) -> Result<(), E> + Send,
 ) -> Result<FilterStatistics, E> {
     let Plan { filter, boxes, mut statistics } = plan;
@@ -120,13 +124,13 @@ fn build_with<T: Send, E: From<Cancelled> + Send>(
     let phase = run.phase(Phase::Band, boxes.len() as u64);
     run.install(|| {
         let mut ready: Vec<T> = Vec::new();
-        let mut batches = boxes.chunks(at_a_time);
+        let mut batches = boxes.chunks(boxes_in_flight);
         loop {
             let next = batches.next();
             // The bridge takes the last batch while the workers fill the next one.
             let (sunk, filled) = rayon::join(
                 || ready.into_iter().try_for_each(&mut sink),
-                || next.map(|boxes| worker.fill(boxes, &scratch, &keep, &phase)),
+                || next.map(|boxes| worker.fill(boxes, &scratch, &map, &phase)),
             );
             sunk?;
             let Some(filled) = filled else { break };
@@ -157,11 +161,11 @@ pub fn build_with_policy<E: From<Cancelled> + Send>(
     build_with(plan, settings, policy, usize::MAX, run, LeafBatch::clone, sink)
 }
 
-/// The work of a band: which boxes to go through with which filters.
+/// The work of a band: the boxes to go through, and the filters.
 pub(super) struct Plan<'a> {
     pub(super) filter: Filter<'a>,
     pub(super) boxes: Vec<Block>,
-    /// Holds the nodes of the grid.
+    /// Statistics with the number of the grid's nodes.
     pub(super) statistics: FilterStatistics,
 }
 
@@ -195,7 +199,7 @@ fn node_count([lo, hi]: [Ijk; 2]) -> u64 {
     (hi - lo).0.map(|n| n as u64 + 1).iter().product()
 }
 
-/// The bounding boxes that cover the grid, in lexicographic order.
+/// Returns the bounding boxes that cover the grid, in lexicographic order.
 fn bounding_boxes([lo, hi]: [Ijk; 2], side: BoxSide) -> Vec<Block> {
     let longest = (hi - lo).0.into_iter().max().expect("three axes") + 1;
     let side = match side {
@@ -223,7 +227,7 @@ pub(super) struct Worker<'a, P> {
     pub(super) policy: P,
 }
 
-/// The working memory of a thread: what was used for one box is used for the next.
+/// The working memory of a thread, used for one box after the other.
 #[derive(Default)]
 struct Scratch {
     pruner: CandidatePruner,
@@ -235,7 +239,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
         &self,
         boxes: &[Block],
         scratch: &Mutex<Vec<Scratch>>,
-        keep: impl Fn(&LeafBatch) -> T + Sync,
+        map: impl Fn(&LeafBatch) -> T + Sync,
         phase: &crate::run::PhaseGuard,
     ) -> Result<(Vec<T>, FilterStatistics), Cancelled> {
         // As many as there are threads at most, whatever became of one that held the lock.
@@ -248,7 +252,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
             batch.clear();
             let counts = self.bounding_box(block, pruner, batch);
             let is_kept = !batch.is_empty() || !batch.inside_blocks.is_empty();
-            let kept = is_kept.then(|| keep(batch));
+            let kept = is_kept.then(|| map(batch));
             pool().push(own);
             Ok((kept, counts))
         };
@@ -317,15 +321,15 @@ impl<P: LeafPolicy> Worker<'_, P> {
         }
     }
 
-    /// The sign of the distance in all of a block whose centre has the signed distance `centre`, where that is farther
-    /// from the surface than any node is from the centre.
+    /// The sign of the distance in all of a block whose centre has the signed distance `centre`,
+    /// where that is farther from the surface than any node is from the centre.
     pub(super) fn side_around(&self, block: Block, centre: f64) -> Option<f64> {
         let is_far = centre.abs() > block.radius(self.filter.lattice) * (1.0 + 1e-9);
         is_far.then_some(1f64.copysign(centre))
     }
 
-    /// Sets eight nodes by their closest triangles, and returns how many of them are valid. `side` is the sign of their
-    /// distances, where that is known.
+    /// Sets eight nodes by their closest triangles, and returns how many of them are valid. `side`
+    /// is the sign of their distances, where that is known.
     pub(super) fn set_nodes(
         &self,
         nodes: &[Ijk; 8],
@@ -352,7 +356,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
         valid
     }
 
-    /// `phi` at `p`, or 0 where it is so close to 0 that only rounding gives it a sign.
+    /// Returns `phi` at `p`, or 0 where `phi` is so close to 0 that only rounding gives it a sign.
     fn settled(&self, phi: f64, p: DVec3) -> f64 {
         let rounding = 4.0 * f64::EPSILON * (p.abs().max_element() + self.settings.r.abs());
         if phi.abs() <= ON_SURFACE * self.settings.lattice.voxel + rounding { 0.0 } else { phi }

@@ -6,11 +6,13 @@ use crate::filter::{FilterSettings, FilterStatistics, Switch, Verdict};
 use crate::run::{Cancelled, RunSettings};
 use rayon::prelude::*;
 
-/// The smallest blocks of the octree filter, as in the build.
+/// Width of the smallest blocks of the octree filter, in nodes, as in the build.
 const SMALLEST: i32 = 2;
 
-/// The counts that [`build_filtered`](super::build_filtered) would return. A kept block's nodes are counted
-/// and not evaluated, so that tens of millions of queries cost nothing; `valid_nodes` stays 0 for that reason.
+/// Returns the counts that [`build_filtered`](super::build_filtered) would return.
+///
+/// The nodes of a kept block are counted and not evaluated, so tens of millions of queries cost
+/// nothing. `valid_nodes` stays 0 for that reason.
 ///
 /// # Errors
 /// Cancellation.

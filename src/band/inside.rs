@@ -1,21 +1,23 @@
-//! The blocks of nodes that are inside as a whole: all that is known of the inside beyond the leaves.
+//! The blocks of nodes that are inside as a whole: all of the inside beyond the leaves.
 
-use crate::lattice::leaf_index::{BLOCK, block, blocks_of, find, place};
+use crate::lattice::leaf_index::{BLOCK, block, blocks_of, find, number_in_block};
 use crate::lattice::{Ijk, LEAF_DIM, LeafMask};
 use rayon::prelude::*;
 
 /// Blocks that do not overlap.
 #[derive(Clone, Debug, Default)]
 pub struct InsideBlocks {
-    /// Those of at most 8^3 leaves, by the blocks of 8^3 leaves that hold them, ascending: a bit for each leaf.
+    /// Blocks of 8^3 leaves that hold inside blocks of at most that size, ascending.
     blocks: Vec<Ijk>,
+    /// A bit for each inside leaf, by block.
     masks: Vec<LeafMask>,
-    /// Larger ones, per side, a power of two, the origins in ascending order.
+    /// Larger inside blocks: their width, a power of two, and their origins in ascending order.
     larger: Vec<(i32, Vec<Ijk>)>,
 }
 
 impl InsideBlocks {
-    /// From blocks (origin, side) whose sides are powers of two and whose origins are multiples of them.
+    /// Returns the set of some blocks, given as origin and width in nodes. Widths are powers of
+    /// two, and origins multiples of them.
     pub fn new(inside: &[(Ijk, i32)]) -> InsideBlocks {
         let small = || inside.iter().filter(|b| b.1 <= BLOCK);
         let blocks = blocks_of(small().map(|b| b.0));
@@ -23,7 +25,7 @@ impl InsideBlocks {
         let mut at = 0;
         for &(origin, side) in small() {
             let mask: &mut LeafMask = &mut masks[find(&blocks, &mut at, origin)];
-            let (first, n) = (place(origin), (side / LEAF_DIM) as usize);
+            let (first, n) = (number_in_block(origin), (side / LEAF_DIM) as usize);
             let row = (1 << n) - 1;
             for word in &mut mask[first >> 6..][..n] {
                 *word |= (0..n).fold(0, |rows, y| rows | row << (8 * y)) << (first & 63);
@@ -42,16 +44,16 @@ impl InsideBlocks {
         InsideBlocks { blocks, masks, larger }
     }
 
-    /// Whether each of the nodes lies in one of the blocks.
+    /// Returns for each node whether one of the blocks holds it.
     pub fn contain(&self, nodes: &[Ijk]) -> Vec<bool> {
         nodes.par_iter().with_min_len(1 << 10).map(|&node| self.contains(node)).collect()
     }
 
-    /// Whether a node lies in one of the blocks.
+    /// Whether one of the blocks holds a node.
     pub fn contains(&self, node: Ijk) -> bool {
         if let Ok(n) = self.blocks.binary_search(&block(node)) {
-            let place = place(node);
-            return self.masks[n][place >> 6] >> (place & 63) & 1 == 1;
+            let number = number_in_block(node);
+            return self.masks[n][number >> 6] >> (number & 63) & 1 == 1;
         }
         self.larger.iter().any(|(side, origins)| {
             let origin = Ijk(node.0.map(|x| x & !(side - 1)));

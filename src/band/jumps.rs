@@ -1,14 +1,18 @@
-//! Leaves where the sign of the distance jumps far from the surface, which happens when the input is not
-//! closed, or is and intersects itself: there the offset solid is closed along the jump.
+//! Leaves where the sign of the distance jumps far from the surface.
+//!
+//! The sign jumps when the input is not closed, or intersects itself. The offset solid is closed
+//! along the jump.
 
 use super::{BandSettings, LeafBatch};
 use crate::candidates::BlockLists;
 use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, LeafIndex};
 use rayon::prelude::*;
 
-/// Uniform inside leaves that touch, across a face, a region which is outside as a whole. Without them the
-/// sign change between the two would lie in no leaf. `leaves` are those of the band, `inside_blocks` what
-/// it found inside as a whole, and `is_inside` says whether a node of no leaf is. On the current rayon pool.
+/// Returns the uniform inside leaves that touch, across a face, a region which is outside as a
+/// whole. Without them the sign change between the two would lie in no leaf.
+///
+/// `leaves` are the leaves of the band, `inside_blocks` the blocks that it found inside as a whole.
+/// `is_inside` says whether a node of no leaf is inside. Runs on the current rayon pool.
 pub fn leaves_at_jumps(
     leaves: &[Ijk],
     inside_blocks: &[(Ijk, i32)],
@@ -40,7 +44,7 @@ pub fn leaves_at_jumps(
     }
 }
 
-/// The leaves on the six faces of a block, each with its neighbour beyond the face.
+/// Returns the leaves on the six faces of a block, each with its neighbour beyond the face.
 fn border(origin: Ijk, side: i32) -> impl Iterator<Item = (Ijk, Ijk)> {
     let n = side / LEAF_DIM;
     (0..3usize).flat_map(move |axis| {
@@ -66,7 +70,8 @@ mod tests {
 
     #[test]
     fn only_faces_towards_the_outside_get_leaves() {
-        // A block of 2 x 2 x 2 leaves; everything with x < 0 is outside, the rest inside or in leaves.
+        // A block of 2 x 2 x 2 leaves; everything with x < 0 is outside, the rest inside or in
+        // leaves.
         let leaves = [Ijk::new(-8, 0, 0)];
         let settings =
             BandSettings { lattice: Lattice { voxel: 0.5 }, r: 0.0, half_width: 1.0, slab: Slab::WHOLE };

@@ -1,4 +1,5 @@
-//! How much of the offset surface each layer of leaves holds, from the coarse filters: what slabs are cut by.
+//! The share of the offset surface in each layer of leaves, by the coarse filters, for the choice
+//! of slabs.
 
 use super::build::{BandSettings, Plan};
 use crate::distance::SignedDistance;
@@ -10,20 +11,22 @@ use rayon::prelude::*;
 /// Leaves that the coarse filters keep, by layer along x.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Layers {
-    /// The first node of the first layer along x.
+    /// Coordinate of the first layer's first node along x.
     pub first: i32,
-    /// Leaves of each layer of eight nodes. A few of them turn out to hold no node of the band.
+    /// Number of leaves in each layer of eight nodes. A few leaves turn out to hold no node of the
+    /// band.
     pub leaves: Vec<u64>,
 }
 
 impl Layers {
-    /// The leaves of all layers.
+    /// Returns the number of leaves in all layers.
     pub fn total(&self) -> u64 {
         self.leaves.iter().sum()
     }
 }
 
-/// Applies the filters down to leaves, and counts what they keep. That is a few percent of the work of the band.
+/// Applies the filters down to leaves, and counts the leaves that they keep. Counting takes a few
+/// percent of the work of the band.
 ///
 /// # Errors
 /// Cancellation.

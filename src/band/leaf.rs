@@ -5,12 +5,12 @@ use crate::candidates::block_in_leaf;
 use crate::filter::Block;
 use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, LeafMask, Z_LAST};
 
-/// What became of a leaf.
+/// The outcome of a leaf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LeafOutcome {
-    /// It is in the batch.
+    /// The leaf is in the batch.
     Kept,
-    /// No node of it is in the band.
+    /// No node of the leaf is in the band.
     Dropped,
 }
 
@@ -68,7 +68,8 @@ impl Leaf {
         LeafOutcome::Dropped
     }
 
-    /// The same without values. Nodes with negative ones are those that are known to be inside.
+    /// Appends the leaf at `origin` to `batch` without values, unless no node of it is active or
+    /// inside. A negative value marks a node that is known to be inside.
     pub(super) fn finish_unsigned(&self, origin: Ijk, batch: &mut LeafBatch) -> LeafOutcome {
         let inside = inside_mask(&self.values);
         if self.active == [0; 8] && inside == [0; 8] {
@@ -82,8 +83,9 @@ impl Leaf {
     }
 }
 
-/// The blocks of 2^3 nodes, by number, with a node that is the lowest one of a cell with nodes on both sides of the
-/// surface, or may be: nodes beyond the leaf are taken to be on the side of the nearest node in it, unless that is in the band.
+/// The blocks of 2^3 nodes, by number, with a node that is the lowest one of a cell with nodes on
+/// both sides of the surface, or may be: nodes beyond the leaf are taken to be on the side of the
+/// nearest node in it, unless that is in the band.
 pub(super) fn blocks_with_crossed_cells(inside: &LeafMask, active: &LeafMask) -> u64 {
     let outside = inside.map(|word| !word);
     let [inside, outside, active] = [inside, &outside, active].map(in_any_corner);
@@ -112,8 +114,8 @@ fn in_any_corner(mask: &LeafMask) -> LeafMask {
     })
 }
 
-/// phi as an f32 that keeps its sign and stays below the background; zero becomes the smallest positive
-/// value.
+/// Rounds phi to an f32 that keeps its sign and stays below the background. Zero becomes the
+/// smallest positive value.
 fn stored(phi: f64, background: f32) -> f32 {
     let magnitude = (phi.abs() as f32).clamp(f32::MIN_POSITIVE, background.next_down());
     if phi < 0.0 { -magnitude } else { magnitude }

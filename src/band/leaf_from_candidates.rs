@@ -1,4 +1,5 @@
-//! A leaf by candidate lists: one walk of the hierarchy for all of it, unless there are too many.
+//! Makes a leaf from candidate lists: one walk of the hierarchy for all of its nodes, unless there
+//! are too many candidates.
 
 use super::LeafBatch;
 use super::build::Worker;
@@ -9,15 +10,18 @@ use crate::filter::{Block, FilterStatistics};
 use crate::lattice::{Ijk, LEAF_DIM};
 use glam::DVec3;
 
-/// Where the centre of a leaf's nodes is, along each axis, in nodes.
+/// Coordinate of the centre of a leaf's nodes along each axis, in voxels from the lowest node.
 const CENTRE: f32 = 0.5 * (LEAF_DIM - 1) as f32;
 
-/// Leaves with more candidates ask the hierarchy for every eight nodes: it goes down to what they need in the logarithm of what
-/// lists go through. Dragon +2% at 512, where the lists of all leaves have 12 million triangles, takes about as long either
-/// way, a little less by lists; at 64, with as many in a sixtieth of the leaves, 3.8 s by lists and 0.1 s by the hierarchy.
-const MOST: usize = 1500;
+/// Number of candidates beyond which a leaf asks the hierarchy for every eight nodes instead.
+///
+/// The hierarchy goes down to the triangles that these need in the logarithm of what lists go
+/// through. Dragon +2% at 512, where the lists of all leaves have 12 million triangles, takes about
+/// as long either way, a little less by lists. At 64, with as many candidates in a sixtieth of the
+/// leaves, lists take 3.8 s and the hierarchy 0.1 s.
+const MAX_CANDIDATES: usize = 1500;
 
-/// What a leaf is made with.
+/// The leaf in the making, and what it is made with.
 struct Work<'a> {
     pruner: &'a mut CandidatePruner,
     lists: &'a mut BlockLists,
@@ -26,8 +30,8 @@ struct Work<'a> {
 }
 
 impl<P: LeafPolicy> Worker<'_, P> {
-    /// Evaluates the leaf at `origin`, whose centre is at the signed distance `distance` with the closest triangle
-    /// `triangle`, and appends it with the lists of its blocks.
+    /// Evaluates the leaf at `origin`, whose centre is at the signed distance `distance` with the
+    /// closest triangle `triangle`, and appends it with the lists of its blocks.
     pub(super) fn leaf_from_candidates(
         &self,
         origin: Ijk,
@@ -41,7 +45,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
         let ssvh = self.filter.distance.ssvh();
         let q = ssvh.triangle(triangle).closest(block.centre(self.filter.lattice)).point;
         // A policy without signs decides by lists.
-        let most = if P::IS_SIGNED { MOST } else { usize::MAX };
+        let most = if P::IS_SIGNED { MAX_CANDIDATES } else { usize::MAX };
         if !pruner.collect(ssvh, self.filter.lattice, block, q, most) {
             self.leaf_from_hierarchy(origin, triangle, batch, statistics);
             return;
@@ -75,8 +79,9 @@ impl<P: LeafPolicy> Worker<'_, P> {
         }
     }
 
-    /// Applies the octree filter to the eight octants of a block whose list has the given depth, and goes on with those
-    /// that it keeps. `side` is the sign of the distance in all of the block, where it is one.
+    /// Applies the octree filter to the eight octants of a block whose list has the given depth,
+    /// and goes on with those that it keeps. `side` is the sign of the distance in all of the
+    /// block, where it is one.
     fn octants(&self, depth: usize, block: Block, side: Option<f64>, work: &mut Work<'_>) {
         let lattice = self.filter.lattice;
         let octants = block.children();
@@ -136,8 +141,9 @@ impl<P: LeafPolicy> Worker<'_, P> {
         }
     }
 
-    /// Asks the policy about all nodes of a block, whose list is that of `depth`. `centre` is the block's
-    /// centre relative to the leaf's, in voxels; the distance there is in `distance`, in model units.
+    /// Asks the policy about all nodes of a block, whose list is that of `depth`. `centre` is the
+    /// block's centre relative to the leaf's, in voxels; the distance there is in `distance`, in
+    /// model units.
     fn state(
         &self,
         depth: usize,
@@ -150,8 +156,8 @@ impl<P: LeafPolicy> Worker<'_, P> {
         self.policy.decide(&BlockCandidates { pruner, depth, block, centre, lattice, ssvh, distance })
     }
 
-    /// Evaluates the eight nodes of a block of side 2, which was narrowed to last as octant `n` with one of `centres`,
-    /// and returns how many of them are valid.
+    /// Evaluates the eight nodes of a block of side 2, which was narrowed to last as octant `n`
+    /// with one of `centres`, and returns how many of them are valid.
     fn nodes_by_list(
         &self,
         n: usize,

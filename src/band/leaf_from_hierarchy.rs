@@ -1,5 +1,6 @@
-//! A leaf by a query of the hierarchy for every eight blocks or nodes: for leaves whose lists would be too long, and the
-//! plain way that the lists are held against.
+//! Makes a leaf by a query of the hierarchy for every eight blocks or nodes.
+//!
+//! For leaves with too many candidates, and as the plain way that the lists are compared with.
 
 use super::LeafBatch;
 use super::build::Worker;
@@ -37,7 +38,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
         self.finish_without_lists(&leaf, origin, batch);
     }
 
-    /// Evaluates every node of the leaf at `origin`: what is left to do without the octree filter.
+    /// Evaluates every node of the leaf at `origin`, for a band without the octree filter.
     pub(super) fn whole_leaf(
         &self,
         origin: Ijk,
@@ -61,7 +62,8 @@ impl<P: LeafPolicy> Worker<'_, P> {
         }
     }
 
-    /// Evaluates the eight nodes of a block of side 2 whose centre has the signed distance `centre`.
+    /// Evaluates the eight nodes of a block of side 2 whose centre has the signed distance
+    /// `centre`.
     fn nodes(
         &self,
         block: Block,

@@ -3,8 +3,9 @@
 use crate::candidates::BlockLists;
 use crate::lattice::{Ijk, LEAF_SIZE, LeafMask};
 
-/// A batch of leaves, structure of arrays: entry n of `values` and `closest` belongs to node n % 512 of
-/// leaf n / 512.
+/// A batch of leaves as a structure of arrays.
+///
+/// Entry n of `values` and `closest` belongs to node n % 512 of leaf n / 512.
 #[derive(Clone, Debug, Default)]
 pub struct LeafBatch {
     /// Lowest node of each leaf.
@@ -17,19 +18,20 @@ pub struct LeafBatch {
     pub inside: Vec<LeafMask>,
     /// Number of the closest triangle on active nodes, -1 elsewhere; 512 per leaf.
     pub closest: Vec<i32>,
-    /// Blocks (origin, side; the side a multiple of 8) that are inside as a whole and hold no leaf.
+    /// Blocks that are inside as a whole and hold no leaf: origin, and width in nodes, a multiple
+    /// of 8.
     pub inside_blocks: Vec<(Ijk, i32)>,
-    /// The candidate lists of the leaves; empty ones where the band was built without.
+    /// Candidate lists of the leaves, empty where the band was built without lists.
     pub lists: BlockLists,
 }
 
 impl LeafBatch {
-    /// The number of leaves.
+    /// Returns the number of leaves.
     pub fn len(&self) -> usize {
         self.origins.len()
     }
 
-    /// A copy of what a level set holds: no masks of the inside, closest triangles or lists.
+    /// Copies the data of a level set: no masks of the inside, closest triangles or lists.
     pub fn level_set(&self) -> LeafBatch {
         LeafBatch {
             origins: self.origins.clone(),
@@ -40,7 +42,7 @@ impl LeafBatch {
         }
     }
 
-    /// Takes all out; the room stays.
+    /// Removes all leaves and keeps the memory.
     pub fn clear(&mut self) {
         let LeafBatch { origins, values, active, inside, closest, inside_blocks, lists } = self;
         origins.clear();
@@ -58,7 +60,7 @@ impl LeafBatch {
     }
 }
 
-/// The nodes of a leaf with a negative value.
+/// Returns the nodes of a leaf with a negative value.
 pub fn inside_mask(values: &[f32]) -> LeafMask {
     assert_eq!(values.len(), LEAF_SIZE, "a leaf has 512 values");
     std::array::from_fn(|x| {

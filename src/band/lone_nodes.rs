@@ -1,7 +1,7 @@
-//! Nodes that are alone on their side of the surface although they are part of something larger.
+//! Nodes that are alone on their side of the surface although they are part of a larger body.
 //!
-//! The tip of a corner can hold a node whose six neighbours lie outside. The contour would make a body of its own of
-//! it, a hair away from the body that it is the tip of:
+//! The tip of a corner can hold a node whose six neighbours lie outside. The contour would make a
+//! body of its own of it, a hair away from the body that it is the tip of:
 //!
 //! ```text
 //!      outside   .      outside              The tip's node touches the others across the diagonal of a cell only. It
@@ -11,7 +11,8 @@
 //!      o        o        o
 //! ```
 //!
-//! A node that is all that there is of a small part stays: no other node of its side can be reached from it.
+//! A node that is all that there is of a small part stays: no other node of its side can be reached
+//! from it.
 
 use super::signs::{LeafId, SignField};
 use crate::distance::SignedDistance;
@@ -23,16 +24,20 @@ use serde::Serialize;
 use std::ops::AddAssign;
 use std::sync::LazyLock;
 
-/// How far beyond its node a tip may reach, in voxels, away from the other node and to the sides. Those of boxes end within 0.3,
-/// and are found again from the cells beside them; claws and the borders of sheets reach farther, and would be lost.
+/// Length, in voxels, that a tip may reach beyond its node, away from the other node and to the
+/// sides. Tips of boxes end within 0.3 and are found again from the cells beside them. Claws and
+/// the borders of sheets reach farther, and would be lost.
 const LONGEST_TIP: f64 = 0.5;
 
-/// Directions are away from the other node where their cosine with the way to it is below this.
+/// Cosine with the way to the other node below which a direction is away from that node.
 const AWAY: f64 = -0.2;
 
-/// The 26 neighbours of a node, those across a face of its cells first, then those across an edge, then across a corner. Among them
-/// are the others of its body, if that has a corner as sharp as those of a box, at any rotation: the cone in one is 35 degrees wide
-/// to each side, and no direction is farther than 28 from all neighbours.
+/// The 26 neighbours of a node: across a face of its cells first, then across an edge, then across
+/// a corner.
+///
+/// The other nodes of a body with a corner as sharp as a box's are among them, at any rotation: the
+/// cone in such a corner is 35 degrees wide to each side, and no direction is farther than 28
+/// degrees from all neighbours.
 static AROUND: LazyLock<[[i32; 3]; 26]> = LazyLock::new(|| {
     let mut around: Vec<[i32; 3]> =
         (0..27).map(|n| [n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1]).filter(|d| *d != [0; 3]).collect();
@@ -40,18 +45,19 @@ static AROUND: LazyLock<[[i32; 3]; 26]> = LazyLock::new(|| {
     around.try_into().expect("27 less the middle")
 });
 
-/// Others that the way is tried to, at most, the nearest first.
-const MOST_TRIED: usize = 8;
+/// Number of other nodes that the way is tried to at most, the nearest first.
+const MAX_TRIED: usize = 8;
 
-/// Parts of the way to another node at whose ends the surface must not have been crossed.
-const STEPS: i32 = 8;
+/// Number of equal parts of the way to another node. At the end of each part, the sign is that of
+/// the node.
+const WAY_PARTS: i32 = 8;
 
 /// Counts of lone nodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct LoneNodes {
-    /// Those that changed sides.
+    /// Number of lone nodes that changed sides.
     pub joined: u64,
-    /// Those that make a body, or a cavity, of their own.
+    /// Number of lone nodes that make a body, or a cavity, of their own.
     pub alone: u64,
 }
 
@@ -62,7 +68,8 @@ impl AddAssign for LoneNodes {
     }
 }
 
-/// Lets lone nodes of something larger change sides, on the current rayon pool. Counts those that `slab` owns.
+/// Moves lone nodes of a larger body to the other side, on the current rayon pool. Returns the
+/// counts of nodes that `slab` owns.
 pub fn join_lone_nodes(
     signs: &mut SignField,
     distance: &SignedDistance,
@@ -96,10 +103,10 @@ fn is_in(mask: &LeafMask, number: usize) -> bool {
     mask[number >> 6] >> (number & 63) & 1 == 1
 }
 
-/// Looks for what lone nodes belong to.
+/// The search for the body that a lone node belongs to.
 struct Search<'a> {
     signs: &'a SignField,
-    /// By leaf its lone nodes.
+    /// Lone nodes of each leaf.
     lone: &'a [LeafMask],
     distance: &'a SignedDistance<'a>,
     r: f64,
@@ -107,7 +114,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The lone nodes of a leaf that are the tip of something.
+    /// Returns the lone nodes of a leaf that are the tip of a larger body.
     fn joining(&self, leaf: LeafId) -> LeafMask {
         let mut joining = [0; 8];
         for number in bits(&self.lone[leaf.0 as usize]).filter(|&number| self.is_tip(leaf, number)) {
@@ -116,8 +123,8 @@ impl Search<'_> {
         joining
     }
 
-    /// Whether the solid reaches from a node to another one of its side that is not alone, and hardly farther than the node
-    /// elsewhere.
+    /// Whether the solid reaches from a node to another node of its side that is not alone, and
+    /// hardly farther than the node elsewhere.
     fn is_tip(&self, leaf: LeafId, number: usize) -> bool {
         let local = Ijk::in_leaf(Ijk::default(), number);
         let side = is_in(self.signs.inside(leaf), number);
@@ -136,15 +143,15 @@ impl Search<'_> {
                 let direction = towards(other).normalize();
                 direction.dot(way.normalize()) <= AWAY && is_on_side(node + LONGEST_TIP * voxel * direction)
             };
-            let is_between = |n: i32| is_on_side(node + f64::from(n) / f64::from(STEPS) * voxel * way);
-            !AROUND.iter().any(goes_on) && (1..STEPS).all(is_between)
+            let is_between = |n: i32| is_on_side(node + f64::from(n) / f64::from(WAY_PARTS) * voxel * way);
+            !AROUND.iter().any(goes_on) && (1..WAY_PARTS).all(is_between)
         };
-        AROUND.iter().filter(is_other).take(MOST_TRIED).any(reaches)
+        AROUND.iter().filter(is_other).take(MAX_TRIED).any(reaches)
     }
 }
 
-/// The nodes of a leaf whose six neighbours are all on the other side. Where the field ends, neighbours count as being on
-/// the same side.
+/// The nodes of a leaf whose six neighbours are all on the other side. Where the field ends,
+/// neighbours count as being on the same side.
 fn lone_in(signs: &SignField, leaf: LeafId) -> LeafMask {
     let own = signs.inside(leaf);
     if *own == [0; 8] || *own == [!0; 8] {
@@ -156,7 +163,8 @@ fn lone_in(signs: &SignField, leaf: LeafId) -> LeafMask {
     std::array::from_fn(|x| {
         let word = own[x];
         let layer = |n: usize, at: usize| around[n].map(|mask| mask[at]);
-        // The word of the next layer, of the next row and of the next node, and what comes there from the next leaf.
+        // The word of the next layer, of the next row and of the next node, and what comes there
+        // from the next leaf.
         let low_x = if x > 0 { Some(own[x - 1]) } else { layer(0, 7) };
         let high_x = if x < 7 { Some(own[x + 1]) } else { layer(1, 0) };
         let low_y = layer(2, x).map(|other| word << 8 | other >> 56);
@@ -219,7 +227,8 @@ mod tests {
 
     #[test]
     fn a_tip_changes_sides_and_a_small_part_does_not() {
-        // A cube of half-side 0.8 whose last layer of nodes is taken for outside but for a corner, and a node far away.
+        // A cube of half-side 0.8 whose last layer of nodes is taken for outside but for a corner,
+        // and a node far away.
         let mesh = shapes::cube(1);
         let topology = Topology::new(&mesh);
         let distance = SignedDistance::new(&mesh, &topology);

@@ -19,7 +19,7 @@ mod signs;
 mod tests;
 
 pub use build::{
-    BOXES_PER_BATCH, BandSettings, build, build_filtered, build_kept, build_with_policy, grid_nodes,
+    BOXES_PER_BATCH, BandSettings, build, build_filtered, build_map, build_with_policy, grid_nodes,
 };
 pub use count::count_queries;
 pub use inside::InsideBlocks;

@@ -1,8 +1,8 @@
-//! The band as the edges and the contour need it, in plain arrays; and into a store, where it is to be kept.
+//! The band as the edges and the contour need it, in plain arrays, and its copy in a store.
 
 use super::{
     BOXES_PER_BATCH, BandSettings, InsideBlocks, LeafBatch, LoneNodes, NearTriangles, NodeTriangles,
-    PartTriangles, SignField, build_kept, join_lone_nodes, leaves_at_jumps,
+    PartTriangles, SignField, build_map, join_lone_nodes, leaves_at_jumps,
 };
 use crate::candidates::{BlockLists, CandidateLists};
 use crate::distance::SignedDistance;
@@ -10,7 +10,7 @@ use crate::filter::FilterStatistics;
 use crate::lattice::{Ijk, LeafMask, Slab};
 use crate::run::{Cancelled, RunSettings};
 
-/// What a store keeps of a batch of leaves.
+/// The part of a batch of leaves that a store keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StoredPart {
     /// Nothing.
@@ -22,7 +22,7 @@ pub(crate) enum StoredPart {
 }
 
 impl StoredPart {
-    /// Copies what is stored of a batch.
+    /// Copies the stored part of a batch.
     fn of(self, batch: &LeafBatch) -> Option<LeafBatch> {
         match self {
             StoredPart::Nothing => None,
@@ -34,9 +34,9 @@ impl StoredPart {
     }
 }
 
-/// A place outside of the band's own arrays where its leaves are kept, as an OpenVDB tree.
+/// A store for the leaves of a band outside of its own arrays, as an OpenVDB tree.
 pub(crate) trait BandStore<E> {
-    /// What the store keeps of each batch.
+    /// Returns the part of each batch that the store keeps.
     fn stored_part(&self) -> StoredPart;
 
     /// Adds the leaves and the inside blocks of `batch` that `slab` owns.
@@ -48,27 +48,30 @@ pub(crate) trait BandStore<E> {
 
 /// The band around the offset surface.
 pub(crate) struct NarrowBand {
-    /// Which nodes are inside.
+    /// Signs of the nodes.
     pub(crate) signs: SignField,
-    /// The closest triangles of its nodes, and those near its edges.
+    /// Closest triangles of the nodes, and the triangles near the edges.
     pub(crate) near: NearTriangles,
-    /// What making it took.
+    /// Work and size of the band.
     pub(crate) counts: BandCounts,
 }
 
 /// The work of the filters, and the size of what the slab owns.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct BandCounts {
+    /// Work of the filters.
     pub(crate) filter: FilterStatistics,
+    /// Number of active nodes that the slab owns.
     pub(crate) active_voxels: u64,
+    /// Number of leaves that the slab owns.
     pub(crate) leaves: u64,
-    /// Of a band that is contoured.
+    /// Lone nodes, of a band that is contoured.
     pub(crate) lone_nodes: LoneNodes,
 }
 
-/// What is asked of the leaves once they are made.
+/// The use of the leaves once they are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Next {
+enum BandUse {
     /// Edges and a contour.
     Contour,
     /// Nothing: they are only stored.
@@ -82,15 +85,15 @@ pub(crate) fn build<E: From<Cancelled> + Send>(
     store: Option<&mut (dyn BandStore<E> + Send)>,
     run: &RunSettings,
 ) -> Result<NarrowBand, E> {
-    let (parts, counts) = Parts::collect(distance, settings, Next::Contour, store, run)?;
+    let (builder, counts) = BandBuilder::collect(distance, settings, BandUse::Contour, store, run)?;
     run.install(|| {
-        let ring = |nodes: &[Ijk]| Ok::<_, E>(parts.blocks.contain(nodes));
-        let mut signs = SignField::new(&parts.origins, &parts.inside, settings.slab, ring)?;
+        let ring = |nodes: &[Ijk]| Ok::<_, E>(builder.blocks.contain(nodes));
+        let mut signs = SignField::new(&builder.origins, &builder.inside, settings.slab, ring)?;
         let BandSettings { lattice, r, slab, .. } = *settings;
         let lone_nodes = join_lone_nodes(&mut signs, distance, r, lattice, slab);
         let counts = BandCounts { lone_nodes, ..counts };
-        let nodes = NodeTriangles::new(&signs, &parts.origins, parts.closest);
-        let lists = CandidateLists::new(settings.lattice, parts.lists);
+        let nodes = NodeTriangles::new(&signs, &builder.origins, builder.closest);
+        let lists = CandidateLists::new(settings.lattice, builder.lists);
         Ok(NarrowBand { signs, near: NearTriangles { nodes, lists: Some(lists) }, counts })
     })
 }
@@ -102,41 +105,45 @@ pub(crate) fn store<E: From<Cancelled> + Send>(
     store: &mut (dyn BandStore<E> + Send),
     run: &RunSettings,
 ) -> Result<BandCounts, E> {
-    Ok(Parts::collect(distance, settings, Next::Nothing, Some(store), run)?.1)
+    Ok(BandBuilder::collect(distance, settings, BandUse::Nothing, Some(store), run)?.1)
 }
 
-/// What is kept of a batch of leaves.
-struct Kept {
+/// The data that are kept of a batch of leaves.
+struct BatchSummary {
     origins: Vec<Ijk>,
     inside_blocks: Vec<(Ijk, i32)>,
-    /// Leaves and active nodes that the slab owns.
-    owned: [u64; 2],
-    /// For edges and a contour: which nodes are inside, their closest triangles, and those near the edges.
+    /// Number of leaves that the slab owns.
+    owned_leaves: u64,
+    /// Number of active nodes that the slab owns.
+    owned_nodes: u64,
+    /// For edges and a contour: the nodes that are inside, the closest triangles of the nodes, and
+    /// the triangles near the edges.
     near: Option<(Vec<LeafMask>, PartTriangles, BlockLists)>,
-    /// For the store.
+    /// Leaves for the store.
     stored: Option<LeafBatch>,
 }
 
-impl Kept {
-    fn new(batch: &LeafBatch, slab: Slab, next: Next, part: StoredPart) -> Kept {
+impl BatchSummary {
+    fn new(batch: &LeafBatch, slab: Slab, band_use: BandUse, part: StoredPart) -> BatchSummary {
         let own = batch.origins.iter().zip(&batch.active).filter(|leaf| slab.owns(*leaf.0));
-        let owned = own.fold([0; 2], |[leaves, nodes], (_, active)| {
+        let [owned_leaves, owned_nodes] = own.fold([0; 2], |[leaves, nodes], (_, active)| {
             [leaves + 1, nodes + active.iter().map(|word| u64::from(word.count_ones())).sum::<u64>()]
         });
         let near = || (batch.inside.clone(), PartTriangles::new(&batch.closest), batch.lists.clone());
-        Kept {
+        BatchSummary {
             origins: batch.origins.clone(),
             inside_blocks: batch.inside_blocks.clone(),
-            owned,
-            near: (next == Next::Contour).then(near),
+            owned_leaves,
+            owned_nodes,
+            near: (band_use == BandUse::Contour).then(near),
             stored: part.of(batch),
         }
     }
 }
 
-/// Leaves as they come out of the filters.
+/// Collects leaves as they come out of the filters.
 #[derive(Default)]
-struct Parts {
+struct BandBuilder {
     origins: Vec<Ijk>,
     inside: Vec<LeafMask>,
     closest: Vec<PartTriangles>,
@@ -144,55 +151,55 @@ struct Parts {
     blocks: InsideBlocks,
 }
 
-impl Parts {
+impl BandBuilder {
     fn collect<E: From<Cancelled> + Send>(
         distance: &SignedDistance,
         settings: &BandSettings,
-        next: Next,
+        band_use: BandUse,
         mut store: Option<&mut (dyn BandStore<E> + Send)>,
         run: &RunSettings,
-    ) -> Result<(Parts, BandCounts), E> {
+    ) -> Result<(BandBuilder, BandCounts), E> {
         let slab = settings.slab;
-        let mut parts = Parts::default();
+        let mut builder = BandBuilder::default();
         let mut counts = BandCounts::default();
         let mut inside_blocks = Vec::new();
         let part = store.as_ref().map_or(StoredPart::Nothing, |store| store.stored_part());
-        let keep = |batch: &LeafBatch| Kept::new(batch, slab, next, part);
-        let mut take = |kept: Kept, parts: &mut Parts| -> Result<(), E> {
-            if let (Some(store), Some(batch)) = (&mut store, &kept.stored) {
+        let summarize = |batch: &LeafBatch| BatchSummary::new(batch, slab, band_use, part);
+        let mut take = |summary: BatchSummary, builder: &mut BandBuilder| -> Result<(), E> {
+            if let (Some(store), Some(batch)) = (&mut store, &summary.stored) {
                 store.insert(batch, slab)?;
             }
-            counts.leaves += kept.owned[0];
-            counts.active_voxels += kept.owned[1];
-            parts.take(kept);
+            counts.leaves += summary.owned_leaves;
+            counts.active_voxels += summary.owned_nodes;
+            builder.take(summary);
             Ok(())
         };
-        // What only stays here need not be handed on in between.
-        let at_a_time = if part == StoredPart::Nothing { usize::MAX } else { BOXES_PER_BATCH };
-        let filter = build_kept(distance, settings, at_a_time, run, keep, |kept| {
-            inside_blocks.extend_from_slice(&kept.inside_blocks);
-            take(kept, &mut parts)
+        // Leaves that are not stored need not be handed on in between.
+        let boxes_in_flight = if part == StoredPart::Nothing { usize::MAX } else { BOXES_PER_BATCH };
+        let filter = build_map(distance, settings, boxes_in_flight, run, summarize, |summary| {
+            inside_blocks.extend_from_slice(&summary.inside_blocks);
+            take(summary, &mut builder)
         })?;
         let jumps = run.install(|| {
-            parts.blocks = InsideBlocks::new(&inside_blocks);
-            let is_inside = |node| parts.blocks.contains(node);
-            leaves_at_jumps(&parts.origins, &inside_blocks, settings, is_inside)
+            builder.blocks = InsideBlocks::new(&inside_blocks);
+            let is_inside = |node| builder.blocks.contains(node);
+            leaves_at_jumps(&builder.origins, &inside_blocks, settings, is_inside)
         });
         if !jumps.is_empty() {
-            take(keep(&jumps), &mut parts)?;
+            take(summarize(&jumps), &mut builder)?;
         }
         counts.filter = filter;
-        Ok((parts, counts))
+        Ok((builder, counts))
     }
 
-    fn take(&mut self, kept: Kept) {
-        self.origins.extend_from_slice(&kept.origins);
-        let Some((inside, closest, lists)) = kept.near else { return };
+    fn take(&mut self, summary: BatchSummary) {
+        self.origins.extend_from_slice(&summary.origins);
+        let Some((inside, closest, lists)) = summary.near else { return };
         self.inside.extend(inside);
         self.closest.push(closest);
         // Leaves that were added where the sign jumps have no lists: edges there ask the hierarchy.
         if !lists.is_empty() {
-            self.lists.push((kept.origins, lists));
+            self.lists.push((summary.origins, lists));
         }
     }
 }

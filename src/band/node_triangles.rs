@@ -1,5 +1,5 @@
-//! The closest triangles of the band's nodes. One node of seven is in the band, so only those are kept, found by their ranks
-//! in bit masks.
+//! The closest triangles of the band's nodes. One node of seven is in the band, so only those are
+//! kept, found by their ranks in bit masks.
 
 use super::{LeafId, SignField};
 use crate::candidates::CandidateLists;
@@ -8,21 +8,23 @@ use crate::lattice::{Ijk, LEAF_SIZE, LeafMask, bits};
 /// The slot of a leaf of the ring.
 const RING: [u32; 2] = [u32::MAX; 2];
 
-/// What is known of the triangles that are near the edges.
+/// The triangles near the edges of the band, as far as they are known.
 #[derive(Clone, Debug, Default)]
 pub struct NearTriangles {
-    /// The closest triangles of the band's nodes.
+    /// Closest triangles of the band's nodes.
     pub nodes: NodeTriangles,
-    /// All triangles that can be closest to the points of an edge; without, the hierarchy is asked.
+    /// All triangles that can be closest to the points of an edge. Without lists the hierarchy is
+    /// asked.
     pub lists: Option<CandidateLists>,
 }
 
 /// The closest triangles of the band's nodes, by leaf of a [`SignField`].
 #[derive(Clone, Debug, Default)]
 pub struct NodeTriangles {
-    /// Per leaf of the field its part and its place there, or `u32::MAX` twice for a leaf of the ring.
+    /// Part of each leaf of the field and its number there, or `u32::MAX` twice for a leaf of the
+    /// ring.
     slots: Vec<[u32; 2]>,
-    /// As they were made: they are not moved together.
+    /// Parts as they were made. They are not moved together.
     parts: Vec<PartTriangles>,
 }
 
@@ -30,22 +32,22 @@ pub struct NodeTriangles {
 #[derive(Clone, Debug, Default)]
 pub struct PartTriangles {
     leaves: Vec<LeafSlot>,
-    /// Of the nodes in the masks, leaf by leaf.
+    /// Triangles of the nodes in the masks, leaf by leaf.
     ids: Vec<u32>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct LeafSlot {
-    /// Nodes whose triangle is known.
+    /// Nodes with a known triangle.
     mask: LeafMask,
-    /// How many there are before each word of the mask.
+    /// Number of such nodes before each word of the mask.
     before: [u16; 8],
-    /// Where the leaf's numbers begin.
+    /// Index of the leaf's first triangle in `ids`.
     first: usize,
 }
 
 impl PartTriangles {
-    /// From 512 numbers for each leaf, -1 where none is known.
+    /// Packs 512 triangle numbers for each leaf, -1 where none is known.
     ///
     /// # Panics
     /// When there are not 512 for each.
@@ -71,16 +73,16 @@ impl PartTriangles {
 }
 
 impl NodeTriangles {
-    /// `parts` holds, one after the other, those of the leaves `origins`.
+    /// Combines parts. `parts` holds the triangles of the leaves `origins`, one after the other.
     ///
     /// # Panics
     /// When the numbers of leaves differ.
     pub fn new(signs: &SignField, origins: &[Ijk], parts: Vec<PartTriangles>) -> Self {
-        let places: Vec<[u32; 2]> = (0..)
+        let numbers_in_parts: Vec<[u32; 2]> = (0..)
             .zip(&parts)
-            .flat_map(|(part, of)| (0..of.leaves.len() as u32).map(move |place| [part, place]))
+            .flat_map(|(part, of)| (0..of.leaves.len() as u32).map(move |number| [part, number]))
             .collect();
-        assert_eq!(places.len(), origins.len(), "triangle numbers for each leaf");
+        assert_eq!(numbers_in_parts.len(), origins.len(), "triangle numbers for each leaf");
         let mut order: Vec<u32> = (0..origins.len() as u32).collect();
         order.sort_unstable_by_key(|&n| origins[n as usize]);
         // Both lists are sorted by origin now.
@@ -89,20 +91,20 @@ impl NodeTriangles {
             .leaves()
             .map(|leaf| {
                 let own = order.next_if(|&n| origins[n as usize] == signs.origin(leaf));
-                own.map_or(RING, |n| places[n as usize])
+                own.map_or(RING, |n| numbers_in_parts[n as usize])
             })
             .collect();
         NodeTriangles { slots, parts }
     }
 
-    /// Those of a leaf's nodes; `None` for a leaf of the ring.
+    /// Returns the triangles of a leaf's nodes. `None` for a leaf of the ring.
     #[inline]
     pub fn of_leaf(&self, leaf: LeafId) -> Option<LeafTriangles<'_>> {
         // Without any parts, all triangles are unknown.
-        let [part, place] = *self.slots.get(leaf.0 as usize)?;
+        let [part, number] = *self.slots.get(leaf.0 as usize)?;
         let PartTriangles { leaves, ids } = self.parts.get(part as usize)?;
-        let slot = &leaves[place as usize];
-        let end = leaves.get(place as usize + 1).map_or(ids.len(), |next| next.first);
+        let slot = &leaves[number as usize];
+        let end = leaves.get(number as usize + 1).map_or(ids.len(), |next| next.first);
         Some(LeafTriangles { slot, ids: &ids[slot.first..end] })
     }
 }
@@ -115,7 +117,7 @@ pub struct LeafTriangles<'a> {
 }
 
 impl<'a> LeafTriangles<'a> {
-    /// That of a node, if it is known.
+    /// Returns the triangle of a node, if it is known.
     #[inline]
     pub fn get(&self, node: usize) -> Option<u32> {
         let (word, bit) = (node >> 6, node & 63);
@@ -126,12 +128,12 @@ impl<'a> LeafTriangles<'a> {
         })
     }
 
-    /// All that are known, in the order of the nodes.
+    /// Returns all known triangles, in the order of the nodes.
     pub fn known(&self) -> &'a [u32] {
         self.ids
     }
 
-    /// One for each of the 512 nodes, -1 where none is known.
+    /// Returns a triangle for each of the 512 nodes, -1 where none is known.
     pub fn by_node(&self) -> [i32; LEAF_SIZE] {
         let mut all = [-1; LEAF_SIZE];
         for (node, &id) in bits(&self.slot.mask).zip(self.ids) {
@@ -153,8 +155,8 @@ mod tests {
         let part = PartTriangles::new(&numbers);
         let triangles = NodeTriangles { slots: vec![[0, 2], RING, [0, 0], [0, 1]], parts: vec![part] };
         assert!(triangles.of_leaf(LeafId(1)).is_none() && triangles.of_leaf(LeafId(4)).is_none());
-        for (leaf, place) in [(0, 2), (2, 0), (3, 1)] {
-            let expected = &numbers[place * LEAF_SIZE..(place + 1) * LEAF_SIZE];
+        for (leaf, number) in [(0, 2), (2, 0), (3, 1)] {
+            let expected = &numbers[number * LEAF_SIZE..(number + 1) * LEAF_SIZE];
             let found = triangles.of_leaf(LeafId(leaf)).unwrap();
             assert_eq!(found.by_node(), expected);
             assert!((0..LEAF_SIZE).all(|n| found.get(n) == u32::try_from(expected[n]).ok()));

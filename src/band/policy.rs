@@ -5,16 +5,18 @@ use crate::filter::Block;
 use crate::lattice::Lattice;
 use crate::ssvh::Ssvh;
 
-/// A rule for the leaves of a band. [`build_with_policy`](super::build_with_policy) builds the band.
+/// A rule for the leaves of a band. [`build_with_policy`](super::build_with_policy) builds the
+/// band.
 pub trait LeafPolicy: Sync {
     /// Whether nodes get the sign of their distance.
     ///
-    /// Without signs, distances are not negative and `values` stay empty. Nothing is known of blocks
-    /// beyond the band. Every leaf is worked off by candidate lists, and all of them are kept.
+    /// Without signs, distances are not negative and `values` stay empty. Nothing is known of
+    /// blocks beyond the band. Every leaf is worked off by candidate lists, and all of them are
+    /// kept.
     const IS_SIGNED: bool;
 
-    /// Decides about all nodes of a block by the triangles that can be closest to them. `None`: each
-    /// node is looked at.
+    /// Decides about all nodes of a block by the triangles that can be closest to them. `None`:
+    /// each node is looked at.
     fn decide(&self, block: &BlockCandidates<'_>) -> Option<BlockState>;
 }
 
@@ -55,21 +57,22 @@ pub struct BlockCandidates<'a> {
 }
 
 impl BlockCandidates<'_> {
-    /// Returns the least and the largest distance that a node of the block can have, in model units.
+    /// Returns the least and the largest distance that a node of the block can have, in model
+    /// units.
     pub fn distances(&self) -> [f64; 2] {
         let radius = self.block.radius(self.lattice);
         [self.distance[0] - radius, self.distance[1] + radius]
     }
 
-    /// Whether all nodes are more than `height`, in model units, over the planes of all triangles in the
-    /// list.
+    /// Whether all nodes are more than `height`, in model units, over the planes of all triangles
+    /// in the list.
     pub fn is_above(&self, height: f64) -> bool {
         let height = (height / self.lattice.voxel) as f32;
         self.pruner.is_above(self.depth, self.centre, self.block.side, height)
     }
 
-    /// Whether all nodes are under the planes of all triangles in the list, and no triangle of the list
-    /// is excepted.
+    /// Whether all nodes are under the planes of all triangles in the list, and no triangle of the
+    /// list is excepted.
     pub fn is_below(&self, is_excepted: impl Fn(u32) -> bool) -> bool {
         let by_slot = |slot: u32| is_excepted(self.ssvh.id_at(slot));
         self.pruner.is_below(self.depth, self.centre, self.block.side, by_slot)

@@ -1,31 +1,33 @@
-//! The leaves of a band and the ring around them, by bit masks of blocks of leaves.
+//! The ring of leaves around the leaves of a band, by bit masks of blocks of leaves.
 
-use crate::lattice::leaf_index::{BLOCK, blocks_of, find, place};
+use crate::lattice::leaf_index::{BLOCK, blocks_of, find, number_in_block};
 use crate::lattice::{Axis, Ijk, LEAF_DIM, LeafMask, Z_FIRST, Z_LAST, bits};
 use rayon::prelude::*;
 
-/// A set of leaves: the blocks that have some, ascending, each with a bit for every leaf, numbered as nodes are in theirs.
+/// A set of leaves: the blocks with leaves of the set, ascending, each with a bit for every leaf.
+/// Leaves are numbered in a block as nodes are in a leaf.
 type LeafSet = Vec<(Ijk, LeafMask)>;
 
-/// The leaves at `origins` and all that touch one of them, if only at a corner, ascending.
+/// Returns the leaves at `origins` and all leaves that touch one of them, if only at a corner,
+/// ascending.
 pub fn with_ring(origins: &[Ijk]) -> Vec<Ijk> {
     let blocks = blocks_of(origins.iter().copied());
     let mut set: LeafSet = blocks.iter().map(|&block| (block, [0; 8])).collect();
     let mut at = 0;
     for &origin in origins {
-        let place = place(origin);
-        set[find(&blocks, &mut at, origin)].1[place >> 6] |= 1 << (place & 63);
+        let number = number_in_block(origin);
+        set[find(&blocks, &mut at, origin)].1[number >> 6] |= 1 << (number & 63);
     }
     for axis in Axis::ALL {
         set = widened(&set, axis);
     }
-    let leaf = |block: Ijk, place: usize| {
-        let Ijk(local) = Ijk::in_leaf(Ijk::default(), place);
+    let leaf = |block: Ijk, number: usize| {
+        let Ijk(local) = Ijk::in_leaf(Ijk::default(), number);
         block + Ijk(local.map(|x| LEAF_DIM * x))
     };
     let mut all: Vec<Ijk> = Vec::with_capacity(set.iter().map(|(_, mask)| count(mask)).sum());
     for (block, mask) in &set {
-        all.extend(bits(mask).map(|place| leaf(*block, place)));
+        all.extend(bits(mask).map(|number| leaf(*block, number)));
     }
     all.par_sort_unstable();
     all
@@ -35,7 +37,7 @@ fn count(mask: &LeafMask) -> usize {
     mask.iter().map(|word| word.count_ones() as usize).sum()
 }
 
-/// The set with the leaves before and after each along `axis`.
+/// Returns the set with the leaves before and after each leaf along `axis` added.
 fn widened(set: &LeafSet, axis: Axis) -> LeafSet {
     let mut step = [0; 3];
     step[axis as usize] = BLOCK;

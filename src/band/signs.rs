@@ -1,7 +1,7 @@
-//! Which nodes are inside the offset solid: the combinatorial part of the band.
+//! The signs of nodes, inside or outside of the offset solid: the combinatorial part of the band.
 //!
-//! A [`SignField`] holds one 512-bit mask per leaf. Besides the leaves of the band it holds a ring of
-//! uniform leaves around them (all 26 neighbours that the band lacks), so that every cell with a
+//! A [`SignField`] holds one 512-bit mask per leaf. Besides the leaves of the band it holds a ring
+//! of uniform leaves around them (all 26 neighbours that the band lacks), so that every cell with a
 //! sign change, and every corner of such a cell, lies in some leaf of the field. Nobody has to ask
 //! for the sign of a node outside it.
 
@@ -19,9 +19,10 @@ pub struct LeafId(pub u32);
 pub struct SignField {
     origins: Vec<Ijk>,
     inside: Vec<LeafMask>,
-    /// Per leaf the neighbour at offset (dx, dy, dz), number 9 (dx+1) + 3 (dy+1) + (dz+1).
+    /// Neighbours of each leaf. The one at offset (dx, dy, dz) has number 9 (dx+1) + 3 (dy+1) +
+    /// (dz+1).
     neighbours: Vec<[u32; 27]>,
-    /// What is computed: the field ends at its planes as if cut off, without a ring.
+    /// Slab that is computed. The field ends at its planes, without a ring.
     slab: Slab,
 }
 
@@ -30,12 +31,14 @@ fn neighbour_slot(delta: [i32; 3]) -> usize {
 }
 
 impl SignField {
-    /// The field of the leaves given by `origins` and `inside` masks, in any order, no origin twice.
-    /// `missing` is asked once for all neighbouring leaves that the band lacks (a sorted list of their
-    /// origins): whether each is inside as a whole. Such a leaf is uniform in every band, since a node
-    /// next to a sign change is valid (\[LW11\] Definition 1) and thus in a leaf of the band.
+    /// The field of the leaves given by `origins` and `inside` masks, in any order, no origin
+    /// twice. `missing` is asked once for all neighbouring leaves that the band lacks (a sorted
+    /// list of their origins): whether each is inside as a whole. Such a leaf is uniform in every
+    /// band, since a node next to a sign change is valid (\[LW11\] Definition 1) and thus in a leaf
+    /// of the band.
     ///
-    /// Where what `slab` computes ends, there is no ring: the field is cut off, and so is the surface.
+    /// Where what `slab` computes ends, there is no ring: the field is cut off, and so is the
+    /// surface.
     pub fn new<E>(
         origins: &[Ijk],
         inside: &[LeafMask],
@@ -68,7 +71,7 @@ impl SignField {
         Ok(SignField { origins, inside, neighbours, slab })
     }
 
-    /// The number of leaves, ring included.
+    /// Returns the number of leaves, ring included.
     pub fn len(&self) -> usize {
         self.origins.len()
     }
@@ -78,27 +81,29 @@ impl SignField {
         self.origins.is_empty()
     }
 
-    /// All leaves, sorted by origin.
+    /// Returns all leaves, sorted by origin.
     pub fn leaves(&self) -> impl ExactSizeIterator<Item = LeafId> + Clone + use<> {
         (0..self.origins.len() as u32).map(LeafId)
     }
 
-    /// The lowest node of a leaf.
+    /// Returns the lowest node of a leaf.
     pub fn origin(&self, leaf: LeafId) -> Ijk {
         self.origins[leaf.0 as usize]
     }
 
-    /// Leaves between a leaf and the plane where the field is cut off, up to `most`.
+    /// Returns the number of leaves between a leaf and the plane where the field ends, up to
+    /// `most`.
     pub fn depth(&self, leaf: LeafId, most: i32) -> i32 {
         self.slab.depth(self.origin(leaf), most)
     }
 
-    /// Whether the field is cut off before the first (`step` -1) or after the last (`step` 1) nodes of a leaf along x.
+    /// Whether the field is cut off before the first (`step` -1) or after the last (`step` 1) nodes
+    /// of a leaf along x.
     pub fn is_cut(&self, leaf: LeafId, step: i32) -> bool {
         !self.slab.computes(self.origin(leaf) + Ijk::new(step * LEAF_DIM, 0, 0), LEAF_DIM)
     }
 
-    /// The nodes of a leaf that are inside the offset solid (phi < 0).
+    /// Returns the nodes of a leaf that are inside the offset solid (phi < 0).
     pub fn inside(&self, leaf: LeafId) -> &LeafMask {
         &self.inside[leaf.0 as usize]
     }
@@ -110,21 +115,22 @@ impl SignField {
         }
     }
 
-    /// The neighbouring leaf `delta` leaves away, each component -1, 0 or 1; `None` beyond the ring.
+    /// Returns the neighbouring leaf `delta` leaves away, each component -1, 0 or 1. `None` beyond
+    /// the ring.
     pub fn neighbour(&self, leaf: LeafId, delta: [i32; 3]) -> Option<LeafId> {
         let n = self.neighbours[leaf.0 as usize][neighbour_slot(delta)];
         (n != NO_LEAF).then_some(LeafId(n))
     }
 
-    /// The leaf and the number in it of the node `local`, given in nodes from the origin of `leaf`,
-    /// each component in -8..16. `None` beyond the ring.
+    /// Returns the leaf that holds the node `local`, and the node's number in it. `local` is given
+    /// in nodes from the origin of `leaf`, each component in -8..16. `None` beyond the ring.
     pub fn locate(&self, leaf: LeafId, local: [i32; 3]) -> Option<(LeafId, usize)> {
         let neighbour = self.neighbour(leaf, local.map(|x| x >> 3))?;
         Some((neighbour, Ijk(local).number_in_leaf()))
     }
 
-    /// The nodes of `leaf` whose edge along `axis` (to the next node) changes sign. Edges that leave the
-    /// field are not counted: beyond the ring nothing changes sign.
+    /// Returns the nodes of `leaf` whose edge along `axis`, to the next node, changes sign. Edges
+    /// that leave the field are not counted: beyond the ring nothing changes sign.
     pub fn crossed_edges(&self, leaf: LeafId, axis: Axis) -> LeafMask {
         let own = self.inside(leaf);
         let mut delta = [0; 3];

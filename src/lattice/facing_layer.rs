@@ -4,8 +4,8 @@ use super::{LeafMask, Z_FIRST, Z_LAST};
 
 /// Returns the nodes of a neighbouring leaf that face this leaf.
 ///
-/// `delta` is the neighbour's offset in leaves. Along an axis with offset -1 the neighbour's last layer
-/// of nodes is kept, with +1 its first layer, with 0 all eight layers.
+/// `delta` is the neighbour's offset in leaves. Along an axis with offset -1 the neighbour's last
+/// layer of nodes is kept, with +1 its first layer, with 0 all eight layers.
 pub fn facing_layer(mask: &LeafMask, [x, y, z]: [i32; 3]) -> LeafMask {
     const Y_FIRST: u64 = 0xff;
     let layer = |delta: i32, first: u64, last: u64| match delta {

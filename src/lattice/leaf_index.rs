@@ -1,18 +1,18 @@
-//! Where a leaf is, by its origin: a sorted list of blocks of 8^3 leaves, each with a table.
+//! Numbers of leaves by origin: a sorted list of blocks of 8^3 leaves, each with a table.
 
 use super::{Ijk, LEAF_DIM};
 use rayon::prelude::*;
 
-/// Leaves along one side of a block: a table of 2 kB for each.
+/// Leaves along one axis of a block. The table of a block takes 2 kB.
 const LEAVES: i32 = 8;
 
-/// Nodes along one side of a block.
+/// Nodes along one axis of a block.
 pub const BLOCK: i32 = LEAVES * LEAF_DIM;
 
-/// No leaf.
+/// The number that stands for no leaf.
 pub const NO_LEAF: u32 = u32::MAX;
 
-/// The numbers of a block's leaves, by [`place`].
+/// Numbers of a block's leaves, by [`number_in_block`].
 type Table = [u32; (LEAVES * LEAVES * LEAVES) as usize];
 
 /// The numbers of leaves by origin.
@@ -33,23 +33,26 @@ impl LeafIndex {
         let mut tables = vec![[NO_LEAF; (LEAVES * LEAVES * LEAVES) as usize]; blocks.len()];
         let mut at = 0;
         for (&origin, n) in origins.iter().zip(0..) {
-            tables[find(&blocks, &mut at, origin)][place(origin)] = n;
+            tables[find(&blocks, &mut at, origin)][number_in_block(origin)] = n;
         }
         LeafIndex { blocks, tables }
     }
 
-    /// The number of the leaf that holds `node`.
+    /// Returns the number of the leaf that holds `node`.
     #[inline]
     pub fn get(&self, node: Ijk) -> Option<usize> {
         let table = self.blocks.binary_search(&block(node)).ok()?;
-        let n = self.tables[table][place(node)];
+        let n = self.tables[table][number_in_block(node)];
         (n != NO_LEAF).then_some(n as usize)
     }
 
-    /// For each of the leaves that were numbered, in their order, the numbers of the leaves around it, or `u32::MAX`: at
-    /// (dx, dy, dz) leaves from it, each -1, 0 or 1, number 9 (dx + 1) + 3 (dy + 1) + (dz + 1). On the current rayon pool.
+    /// Returns the numbers of the leaves around each leaf, or `u32::MAX` where there is none.
+    ///
+    /// `origins` are the leaves that were numbered, in their order. The entry at (dx, dy, dz)
+    /// leaves from a leaf, each -1, 0 or 1, is 9 (dx + 1) + 3 (dy + 1) + (dz + 1). Runs on the
+    /// current rayon pool.
     pub fn around(&self, origins: &[Ijk]) -> Vec<[u32; 27]> {
-        // By block the places of the blocks around it, likewise.
+        // Indices of the blocks around each block, likewise.
         let blocks: Vec<[u32; 27]> = self
             .blocks
             .par_iter()
@@ -65,7 +68,8 @@ impl LeafIndex {
             .collect();
         let around = |at: &mut usize, &origin: &Ijk| {
             let blocks = &blocks[find(&self.blocks, at, origin)];
-            // Along each axis, for each of three leaves: which block it is in, and where there.
+            // Along each axis, for each of three leaves: the block that holds it, and the place
+            // there.
             let [x, y, z] = origin.0.map(|x| {
                 let leaf = (x & (BLOCK - 1)) / LEAF_DIM;
                 [leaf - 1, leaf, leaf + 1]
@@ -84,7 +88,7 @@ impl LeafIndex {
     }
 }
 
-/// The blocks of some leaves, ascending.
+/// Returns the blocks of some leaves, ascending.
 pub fn blocks_of(origins: impl Iterator<Item = Ijk>) -> Vec<Ijk> {
     let mut blocks: Vec<Ijk> = Vec::new();
     for block in origins.map(block) {
@@ -98,8 +102,10 @@ pub fn blocks_of(origins: impl Iterator<Item = Ijk>) -> Vec<Ijk> {
     blocks
 }
 
-/// The place among ascending blocks of the one that holds `node`, which is among them: `at`, if it is the one that was
-/// found last, and that is what it becomes.
+/// Returns the index, among ascending blocks, of the block that holds `node`, which is one of them.
+///
+/// `at` is the index that was found last, and is tried first. It is set to the index that is
+/// returned.
 #[inline]
 pub fn find(blocks: &[Ijk], at: &mut usize, node: Ijk) -> usize {
     let block = block(node);
@@ -109,15 +115,16 @@ pub fn find(blocks: &[Ijk], at: &mut usize, node: Ijk) -> usize {
     *at
 }
 
-/// The lowest node of the block that holds `node`.
+/// Returns the lowest node of the block that holds `node`.
 #[inline]
 pub fn block(node: Ijk) -> Ijk {
     Ijk(node.0.map(|x| x & !(BLOCK - 1)))
 }
 
-/// The place in its block's table of the leaf that holds `node`: as that of a node in its leaf.
+/// Returns the number, in its block, of the leaf that holds `node`. Leaves are numbered in a block
+/// as nodes are in a leaf.
 #[inline]
-pub fn place(node: Ijk) -> usize {
+pub fn number_in_block(node: Ijk) -> usize {
     number_of(node.0.map(|x| ((x & (BLOCK - 1)) / LEAF_DIM) as usize))
 }
 

@@ -1,10 +1,10 @@
 //! The lattice of grid nodes and its index types.
 //!
-//! Node (i, j, k) lies at world position h (i, j, k): the lattice is anchored at the world origin, so
-//! that the grids of different models with the same voxel size line up.
+//! Node (i, j, k) lies at world position h (i, j, k): the lattice is anchored at the world origin,
+//! so that the grids of different models with the same voxel size line up.
 //!
-//! Leaves are blocks of 8 x 8 x 8 nodes, the size of OpenVDB's leaf nodes, and a node's number within
-//! its leaf has z fastest, as there:
+//! Leaves are blocks of 8 x 8 x 8 nodes, the size of OpenVDB's leaf nodes, and a node's number
+//! within its leaf has z fastest, as there:
 //!
 //! ```text
 //!  number = 64 x + 8 y + z      word x of a 512-bit mask, bit 8 y + z of that word
@@ -108,10 +108,10 @@ pub struct Lattice {
     pub voxel: f64,
 }
 
-/// How much larger than half width times voxel size a background is at least: by two units in the last place
-/// of an f32. Then neither the voxel size rounded to f32 nor a division or product rounded to it makes fewer
-/// voxels of the background: these are off by a quarter of that each. Much more, and nodes farther out would
-/// be in the band.
+/// How much larger than half width times voxel size a background is at least: by two units in the
+/// last place of an f32. Then neither the voxel size rounded to f32 nor a division or product
+/// rounded to it makes fewer voxels of the background: these are off by a quarter of that each.
+/// Much more, and nodes farther out would be in the band.
 const HAIR: f64 = 1.0 + 2.0 * f32::EPSILON as f64;
 
 impl Lattice {
@@ -120,9 +120,9 @@ impl Lattice {
         self.voxel * f64::from(i)
     }
 
-    /// The value of nodes outside a band of `half_width` voxels, as stored: a hair above their product, in
-    /// model units. Other programs count the voxels back, in 32 or 64 bits, and take what is less than three
-    /// for no level set.
+    /// The value of nodes outside a band of `half_width` voxels, as stored: a hair above their
+    /// product, in model units. Other programs count the voxels back, in 32 or 64 bits, and take
+    /// what is less than three for no level set.
     pub fn background(&self, half_width: f64) -> f32 {
         let least = half_width * self.voxel * HAIR;
         let background = least as f32;

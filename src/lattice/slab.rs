@@ -1,7 +1,8 @@
-//! Slabs: parts of the lattice between two planes of nodes, worked off one after the other or by several machines.
+//! Slabs: parts of the lattice between two planes of nodes, worked off one after the other or by
+//! several machines.
 //!
-//! A slab owns the leaves between its planes. It computes those around it as well, as far as they bear upon its own
-//! part of the result:
+//! A slab owns the leaves between its planes. It computes those around it as well, as far as they
+//! bear upon its own part of the result:
 //!
 //! ```text
 //!      from - halo          from                  to          to + halo       nodes along x
@@ -9,9 +10,9 @@
 //!           |      L L L L L |  L L L L L L L L L  |  L L L L       |         L: a leaf
 //! ```
 //!
-//! What is owned is the same, to the last bit, as in a run that computes everything: nothing reaches further than the
-//! halo. Slabs are cut across x, the slowest axis in the order of leaves, so that what a slab owns is one piece of
-//! everything that is kept in this order.
+//! What is owned is the same, to the last bit, as in a run that computes everything: nothing
+//! reaches further than the halo. Slabs are cut across x, the slowest axis in the order of leaves,
+//! so that what a slab owns is one piece of everything that is kept in this order.
 
 use super::{Ijk, LEAF_DIM};
 
@@ -33,8 +34,9 @@ impl Slab {
     /// Everything.
     pub const WHOLE: Slab = Slab { from: i32::MIN, to: i32::MAX, halo: 0 };
 
-    /// The leaves from node `from` along x up to but not including node `to`, and `halo` more nodes on either side that are
-    /// computed too. All are multiples of 8; `i32::MIN` and `i32::MAX` stand for no end.
+    /// The leaves from node `from` along x up to but not including node `to`, and `halo` more nodes
+    /// on either side that are computed too. All are multiples of 8; `i32::MIN` and `i32::MAX`
+    /// stand for no end.
     ///
     /// # Panics
     /// When a plane or the halo is not a multiple of 8.
@@ -44,7 +46,8 @@ impl Slab {
         Slab { from, to, halo }
     }
 
-    /// Whether the leaf or block at `origin` counts as the slab's own: each belongs to one of several slabs that touch.
+    /// Whether the leaf or block at `origin` counts as the slab's own: each belongs to one of
+    /// several slabs that touch.
     pub fn owns(&self, origin: Ijk) -> bool {
         (self.from..self.to).contains(&origin.0[0])
     }
@@ -55,8 +58,8 @@ impl Slab {
         x < self.to && x.saturating_add(side) > self.from
     }
 
-    /// Leaves between the leaf at `origin`, which is computed, and the nearer one of the planes where that ends. Up to `most`:
-    /// no further is looked.
+    /// Leaves between the leaf at `origin`, which is computed, and the nearer one of the planes
+    /// where that ends. Up to `most`: no further is looked.
     pub fn depth(&self, origin: Ijk, most: i32) -> i32 {
         let at = |leaves: i32| origin + Ijk::new(LEAF_DIM * leaves, 0, 0);
         let is_open = |n: &i32| self.computes(at(n + 1), LEAF_DIM) && self.computes(at(-n - 1), LEAF_DIM);
