@@ -1,4 +1,5 @@
-//! What all parts of a verification look at: INPUT with its distance, OUTPUT with its tree, the scale.
+//! The case of a verification, for all of its parts: INPUT with its distance, OUTPUT with its tree,
+//! the scale.
 
 use super::error::{VerifyError, Which};
 use super::sampling::{Random, Scale};
@@ -59,13 +60,14 @@ pub(super) struct Case<'m> {
     pub random: Random,
 }
 
-/// The part of the diagonal by which the distance of a point of the true offset surface may differ from |D|:
-/// far above rounding (1e-16 of the coordinates), far below what an offset could be judged by.
+/// The part of the diagonal by which the distance of a point of the true offset surface may differ
+/// from |D|: far above rounding (1e-16 of the coordinates), far below what an offset could be
+/// judged by.
 const EXACT: f64 = 1e-9;
 
 impl<'m> Case<'m> {
-    /// Builds everything but the hierarchy over OUTPUT, which not all parts need. Runs on the current rayon
-    /// pool.
+    /// Builds everything but the hierarchy over OUTPUT, which not all parts need. Runs on the
+    /// current rayon pool.
     ///
     /// # Errors
     /// [`VerifyError`]: a distance that is not finite for this INPUT. [`VerifyError::Cancelled`].
@@ -117,13 +119,14 @@ impl<'m> Case<'m> {
         self.output_ssvh.get_or_init(|| Ssvh::new(&self.output.mesh))
     }
 
-    /// How much the distance of a point of the true offset surface may differ from |D|.
+    /// Returns the most that the distance of a point of the true offset surface may differ from
+    /// |D|.
     pub fn exact(&self) -> f64 {
         EXACT * self.scale.diagonal
     }
 
-    /// The voxel size, or without one what the mean area of OUTPUT's triangles suggests: two triangles to the
-    /// square of a voxel.
+    /// The voxel size, or without one what the mean area of OUTPUT's triangles suggests: two
+    /// triangles to the square of a voxel.
     pub fn voxel(&self) -> f64 {
         self.settings.voxel.unwrap_or_else(|| {
             let mesh = &self.output.mesh;

@@ -7,19 +7,21 @@ use super::sampling::each;
 use crate::run::Cancelled;
 use glam::{DMat3, DVec3};
 
-/// How near an edge must be to count, in voxels. An edge that is off by more can be seen.
+/// Maximum distance of an edge that counts, in voxels. An edge that is off by more can be seen.
 const WITHIN: f64 = 0.05;
 
-/// The cosine of the angle below which an edge counts as along a crease. Edges as long as a voxel with both ends
-/// within 5% are within 6 degrees; others are shorter. Edges across are at 45 degrees or more.
+/// The cosine of the angle below which an edge counts as along a crease. Edges as long as a voxel
+/// with both ends within 5% are within 6 degrees; others are shorter. Edges across are at 45
+/// degrees or more.
 const ALONG: f64 = 0.96;
 
 /// Samples per voxel of length: an edge is seldom shorter than half a voxel.
 const SAMPLES_PER_VOXEL: f64 = 2.0;
 
-/// How far from the crease its two sides are asked for the closest point, as parts of |D|. The first finds the
-/// right facets, each of the following is larger than the error that the one before left, and the last is so
-/// small that what curvature adds (its square) is below [`Case::exact`].
+/// Distances from the crease at which its two sides are asked for the closest point, as parts of
+/// |D|. The first finds the right facets, each of the following is larger than the error that the
+/// one before left, and the last is so small that what curvature adds (its square) is below
+/// [`Case::exact`].
 const STEPS: [f64; 4] = [0.05, 0.01, 1e-3, 1e-5];
 
 /// A point of a crease.
@@ -33,7 +35,7 @@ struct CreasePoint {
     has_edge: bool,
 }
 
-/// How much of the creases OUTPUT has.
+/// Measures how much of the creases OUTPUT has.
 pub(super) fn creases(case: &Case) -> Result<CreaseReport, Cancelled> {
     let within = WITHIN * case.voxel();
     let edges = sharp_edges(case);
@@ -84,9 +86,9 @@ fn samples(edges: &[BentEdge], case: &Case) -> Vec<(usize, f64, f64)> {
     edges.iter().enumerate().flat_map(of_edge).collect()
 }
 
-/// The crease in the plane across the edge at parameter t, or none if the offset has none there. Begins where
-/// the offsets of the edge's two faces meet. Where those faces end before, the closest points on both sides
-/// name the faces that take their place.
+/// The crease in the plane across the edge at parameter t, or none if the offset has none there.
+/// Begins where the offsets of the edge's two faces meet. Where those faces end before, the closest
+/// points on both sides name the faces that take their place.
 fn trace(case: &Case, edge: &BentEdge, t: f64, length: f64, guess: &mut u32) -> Option<CreasePoint> {
     let [n1, n2] = edge.normals;
     let along = (edge.ends[1] - edge.ends[0]).normalize_or_zero();

@@ -1,4 +1,4 @@
-//! How far OUTPUT is from the true offset surface.
+//! Distance of OUTPUT from the true offset surface.
 
 use super::case::{Case, weight};
 use super::report::{DistanceReport, Histogram, Statistics};
@@ -23,8 +23,8 @@ pub(super) fn distance_error(case: &Case) -> Result<DistanceReport, Cancelled> {
     Ok(DistanceReport { surface, vertices, edge_midpoints, max, max_at, wrong_side, histogram })
 }
 
-/// Vertices and midpoints that are looked at, in multiples of the area-uniform samples. All of them where a mesh
-/// has few; more would take most of the time without finding anything new.
+/// Vertices and midpoints that are looked at, in multiples of the area-uniform samples. All of them
+/// where a mesh has few; more would take most of the time without finding anything new.
 const POINTS_PER_SAMPLE: usize = 4;
 
 /// Of more items than are looked at, an even choice.
@@ -103,7 +103,8 @@ fn at_midpoints(case: &Case) -> Result<Statistics, Cancelled> {
     Ok(statistics(case, errors, at))
 }
 
-/// The error at a point with unsigned distance `dis` from INPUT; NaN where there is nothing to judge.
+/// The error at a point with unsigned distance `dis` from INPUT; NaN where there is nothing to
+/// judge.
 fn error(case: &Case, dis: f64) -> f64 {
     let d = case.r.abs();
     if !case.is_shell() || dis >= 0.75 * d {

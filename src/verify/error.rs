@@ -4,7 +4,8 @@ use crate::mesh::MeshError;
 use crate::run::Cancelled;
 use std::fmt;
 
-/// Why a verification cannot be done. A bad mesh is no error: the report says what is wrong with it.
+/// Why a verification cannot be done. A bad mesh is no error: the report says what is wrong with
+/// it.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum VerifyError {

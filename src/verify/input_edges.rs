@@ -5,10 +5,11 @@ use crate::mesh::{Topology, TriMesh};
 use crate::ssvh::Ssvh;
 use glam::DVec3;
 
-/// Edges whose normals differ by less than this (radians) are flat: the direction of their bend is rounding.
+/// Edges whose normals differ by less than this (radians) are flat: the direction of their bend is
+/// rounding.
 const FLAT: f64 = 1e-6;
 
-/// Which way an edge bends the offset surface.
+/// Direction in which an edge bends the offset surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Bend {
     /// The offset is an arc about it: convex when growing, concave when shrinking.
@@ -20,7 +21,7 @@ pub(super) enum Bend {
 /// An edge with two triangles that do not lie in one plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BentEdge {
-    /// Its ends.
+    /// Ends of the edge.
     pub ends: [DVec3; 2],
     /// Vertex numbers of its ends.
     pub vertices: [u32; 2],
@@ -43,8 +44,8 @@ impl BentEdge {
     }
 }
 
-/// All edges that bend the offset at distance `r` the given way. Edges with other than two triangles, or with
-/// triangles that run the same way, bound no solid and are left out.
+/// All edges that bend the offset at distance `r` the given way. Edges with other than two
+/// triangles, or with triangles that run the same way, bound no solid and are left out.
 pub(super) fn bent_edges(
     mesh: &TriMesh,
     topology: &Topology,

@@ -10,7 +10,7 @@ use crate::run::{Cancelled, RunSettings};
 /// Pairs that are located. More would only fill the screen.
 const LOCATED: usize = 10;
 
-/// What one task found.
+/// Findings of one task.
 #[derive(Default)]
 struct Found {
     tested: u64,

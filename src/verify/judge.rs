@@ -14,12 +14,12 @@ use crate::mesh::TriMesh;
 use crate::run::RunSettings;
 use rayon::prelude::*;
 
-/// Judges `output` as the offset surface of `input`. `input` is cleaned first, as for an offset; `output` is
-/// judged as it is.
+/// Judges `output` as the offset surface of `input`. `input` is cleaned first, as for an offset;
+/// `output` is judged as it is.
 ///
 /// # Errors
-/// [`VerifyError`]: a mesh or a setting that nothing can be said about. [`VerifyError::Cancelled`]. A bad mesh is
-/// no error: the report says what is wrong.
+/// [`VerifyError`]: a mesh or a setting that nothing can be said about. [`VerifyError::Cancelled`].
+/// A bad mesh is no error: the report says what is wrong.
 pub fn verify(
     input: &TriMesh,
     output: &TriMesh,
@@ -54,7 +54,8 @@ pub fn verify(
 /// Topology and intersections of a mesh by itself.
 ///
 /// # Errors
-/// [`VerifyError`]: a coordinate that is not finite or a vertex that does not exist. [`VerifyError::Cancelled`].
+/// [`VerifyError`]: a coordinate that is not finite or a vertex that does not exist.
+/// [`VerifyError::Cancelled`].
 pub fn soundness(mesh: &TriMesh, run: &RunSettings) -> Result<Soundness, VerifyError> {
     run.install(|| {
         let welded = Welded::new(mesh, Which::Output)?;
@@ -86,7 +87,7 @@ fn intersections_of(welded: &Welded, run: &RunSettings) -> Result<IntersectionRe
     Ok(super::intersections::intersections(welded, &tree, run)?)
 }
 
-/// How far `output` is from the true offset surface of `input`.
+/// Measures how far `output` is from the true offset surface of `input`.
 ///
 /// # Errors
 /// As [`verify`].
@@ -99,7 +100,7 @@ pub fn distance_error(
     on_case(input, output, settings, run, |case| Ok(super::distance_error::distance_error(case)?))
 }
 
-/// How far the true offset surface of `input` is from `output`.
+/// Measures how far the true offset surface of `input` is from `output`.
 ///
 /// # Errors
 /// As [`verify`].
@@ -112,7 +113,7 @@ pub fn missing(
     on_case(input, output, settings, run, |case| Ok(super::missing::missing(case)?))
 }
 
-/// How much of the creases of the true offset surface of `input` is in `output`.
+/// Measures how much of the creases of the true offset surface of `input` is in `output`.
 ///
 /// # Errors
 /// As [`verify`].

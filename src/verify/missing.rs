@@ -1,8 +1,8 @@
-//! How far the true offset surface is from OUTPUT: what is missing.
+//! Distance of the true offset surface from OUTPUT: what is missing.
 //!
-//! Candidates are p + D n over faces, p + D m over the arcs and caps of normals m about edges and vertices.
-//! Those whose distance to INPUT is |D| are points of the true offset surface; the others lie in folds that an
-//! offset does not have.
+//! Candidates are p + D n over faces, p + D m over the arcs and caps of normals m about edges and
+//! vertices. Those whose distance to INPUT is |D| are points of the true offset surface; the others
+//! lie in folds that an offset does not have.
 
 use super::case::{Case, weight};
 use super::input_edges::{Bend, BentEdge, bent_edges};
@@ -11,7 +11,8 @@ use super::sampling::{Draw, each, worst};
 use crate::run::Cancelled;
 use glam::DVec3;
 
-/// Parts of the samples that edges and vertices get: their arcs and caps are small beside the faces.
+/// Parts of the samples that edges and vertices get: their arcs and caps are small beside the
+/// faces.
 const EDGE_PART: usize = 2;
 const VERTEX_PART: usize = 4;
 

@@ -1,4 +1,4 @@
-//! Whether a mesh is the offset surface that it is said to be.
+//! The judge: tells whether a mesh is the offset surface that it is said to be.
 //!
 //! ```text
 //!  OUTPUT -> weld -> topology
@@ -10,9 +10,9 @@
 //!  all            -> report      and the promises that are broken
 //! ```
 //!
-//! OUTPUT may come from any program. Topology and intersections are exact on the coordinates as they are
-//! given. The other figures are taken at samples, which depend on the seed alone: a report is the same for
-//! every number of threads.
+//! OUTPUT may come from any program. Topology and intersections are exact on the coordinates as
+//! they are given. The other figures are taken at samples, which depend on the seed alone: a report
+//! is the same for every number of threads.
 
 mod case;
 mod creases;

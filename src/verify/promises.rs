@@ -1,4 +1,4 @@
-//! Which promises OUTPUT breaks.
+//! Promises that OUTPUT breaks.
 
 use super::report::{
     Broken, DistanceReport, IntersectionReport, MissingReport, Promise, ShellReport, Soundness,
@@ -29,7 +29,8 @@ impl Soundness {
         broken.map(|(promise, count, what)| Broken { promise, how: counted(count, what) }).collect()
     }
 
-    /// Whether the mesh is closed, 2-manifold, oriented, and free of degenerate and intersecting triangles.
+    /// Whether the mesh is closed, 2-manifold, oriented, and free of degenerate and intersecting
+    /// triangles.
     pub fn is_sound(&self) -> bool {
         self.broken().is_empty()
     }

@@ -1,5 +1,6 @@
-//! What verification finds. Lengths are in model units unless a name says otherwise; vertex and triangle
-//! numbers are those of the file. Everything is serialisable; the field names are those of the JSON file.
+//! Report of a verification. Lengths are in model units unless a name says otherwise; vertex and
+//! triangle numbers are those of the file. Everything is serialisable; the field names are those of
+//! the JSON file.
 
 use serde::Serialize;
 
@@ -11,11 +12,11 @@ pub struct VerifyReport {
     /// Topology and intersections of OUTPUT by itself.
     #[serde(flatten)]
     pub soundness: Soundness,
-    /// How far OUTPUT is from the true offset surface.
+    /// Distance of OUTPUT from the true offset surface.
     pub distance: DistanceReport,
-    /// How far the true offset surface is from OUTPUT.
+    /// Distance of the true offset surface from OUTPUT.
     pub missing: MissingReport,
-    /// How much of the true offset surface's creases OUTPUT has.
+    /// Share of the true offset surface's creases that OUTPUT has.
     pub creases: CreaseReport,
     /// The wall, when it was asked for.
     pub shell: Option<ShellReport>,
@@ -30,7 +31,7 @@ impl VerifyReport {
     }
 }
 
-/// What OUTPUT was judged against.
+/// Offset and samples that OUTPUT was judged by.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Judged {
     /// Signed offset distance.
@@ -78,7 +79,7 @@ pub struct Statistics {
 /// Topology and intersections.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Soundness {
-    /// How triangles, edges and vertices hang together.
+    /// Topology: how triangles, edges and vertices hang together.
     pub topology: TopologyReport,
     /// Triangles that meet where they should not.
     pub intersections: IntersectionReport,
@@ -105,8 +106,8 @@ pub struct TopologyReport {
     pub misoriented_edges: usize,
     /// Vertices whose triangles form more than one fan.
     pub non_manifold_vertices: usize,
-    /// Triangles without area: with two corners at one position, or all three exactly on a line. The former
-    /// have no part in edges and fans.
+    /// Triangles without area: with two corners at one position, or all three exactly on a line.
+    /// The former have no part in edges and fans.
     pub degenerate_triangles: usize,
     /// Triangles with the same three corners as an earlier one, whichever way round.
     pub duplicate_triangles: usize,
@@ -136,8 +137,8 @@ pub struct TopologyReport {
     pub first_duplicate: Option<u32>,
 }
 
-/// Pairs of triangles that have more in common than the vertices and edges they share. Degenerate triangles
-/// have no part in it.
+/// Pairs of triangles that have more in common than the vertices and edges they share. Degenerate
+/// triangles have no part in it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct IntersectionReport {
     /// The number of pairs.
@@ -157,8 +158,8 @@ pub struct IntersectingPair {
     pub point: [f64; 3],
 }
 
-/// | |dis(p, INPUT)| - |D| | over points p of OUTPUT. For a shell, points of the sheet at INPUT's own surface
-/// are judged against distance 0, and those of walls between the sheets are left out.
+/// | |dis(p, INPUT)| - |D| | over points p of OUTPUT. For a shell, points of the sheet at INPUT's
+/// own surface are judged against distance 0, and those of walls between the sheets are left out.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DistanceReport {
     /// Points uniform over OUTPUT's area.
@@ -169,17 +170,18 @@ pub struct DistanceReport {
     pub edge_midpoints: Statistics,
     /// The largest error of all.
     pub max: ReportedLength,
-    /// Where it is.
+    /// Position of the largest.
     pub max_at: Option<[f64; 3]>,
-    /// The share of the surface samples on the wrong side of INPUT, 0 to 1; `None` if INPUT is not closed.
-    /// Samples nearer to INPUT than |D| / 2 are not counted.
+    /// The share of the surface samples on the wrong side of INPUT, 0 to 1; `None` if INPUT is not
+    /// closed. Samples nearer to INPUT than |D| / 2 are not counted.
     pub wrong_side: Option<f64>,
     /// The errors of the surface samples by size.
     pub histogram: Histogram,
 }
 
-/// Counts by the logarithm of the error, for charts. Bin i counts errors from 10^(first + i / per_decade) to
-/// the next, as a part of the diagonal; the first bin also those below, the last also those above.
+/// Counts by the logarithm of the error, for charts. Bin i counts errors from 10^(first + i /
+/// per_decade) to the next, as a part of the diagonal; the first bin also those below, the last
+/// also those above.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Histogram {
     /// Power of ten at which the first bin begins.
@@ -201,17 +203,17 @@ pub struct MissingReport {
     pub vertices: Statistics,
     /// The largest distance of all.
     pub max: ReportedLength,
-    /// Where it is.
+    /// Position of the largest.
     pub max_at: Option<[f64; 3]>,
-    /// A point farther from OUTPUT than this counts as missing: the tolerance if given, otherwise half a
-    /// voxel, otherwise `None`.
+    /// A point farther from OUTPUT than this counts as missing: the tolerance if given, otherwise
+    /// half a voxel, otherwise `None`.
     pub limit: Option<f64>,
     /// The share of all points that are missing, 0 to 1; `None` without a limit.
     pub share: Option<f64>,
 }
 
-/// Creases of the true offset surface: points with two closest points of INPUT, traced from INPUT's concave
-/// edges when growing and from its convex ones when shrinking.
+/// Creases of the true offset surface: points with two closest points of INPUT, traced from INPUT's
+/// concave edges when growing and from its convex ones when shrinking.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct CreaseReport {
     /// Edges of INPUT that creases were traced from: sharper than the crease angle.
@@ -222,16 +224,16 @@ pub struct CreaseReport {
     pub present: f64,
     /// `present / length`; `None` without creases.
     pub share: Option<f64>,
-    /// How near the edge must be: 5% of a voxel.
+    /// Maximum distance of an edge that counts: 5% of a voxel.
     pub within: f64,
     /// The first point of a crease that OUTPUT has no edge along.
     pub first_absent: Option<[f64; 3]>,
 }
 
-/// The wall of a shell: OUTPUT consists of a sheet at INPUT's own surface and one at distance |D|, perhaps
-/// with walls between them. A triangle belongs to the sheet at |D| when all its corners are farther from
-/// INPUT than |D| / 2, to the one at INPUT when none is, and to a wall otherwise. The thickness at a point of
-/// the sheet at |D| is its distance to the other sheet.
+/// The wall of a shell: OUTPUT consists of a sheet at INPUT's own surface and one at distance |D|,
+/// perhaps with walls between them. A triangle belongs to the sheet at |D| when all its corners are
+/// farther from INPUT than |D| / 2, to the one at INPUT when none is, and to a wall otherwise. The
+/// thickness at a point of the sheet at |D| is its distance to the other sheet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ShellReport {
     /// The thickness that was asked for.
@@ -257,13 +259,13 @@ pub struct Thickness {
     pub mean: ReportedLength,
     /// The largest.
     pub max: ReportedLength,
-    /// Where the wall is thinnest.
+    /// Position at which the wall is thinnest.
     pub min_at: [f64; 3],
-    /// Where it is thickest.
+    /// Position at which the wall is thickest.
     pub max_at: [f64; 3],
 }
 
-/// What an offset surface promises.
+/// A promise of an offset surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Promise {
@@ -286,8 +288,8 @@ pub enum Promise {
 /// A promise that OUTPUT breaks.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Broken {
-    /// Which one.
+    /// The promise.
     pub promise: Promise,
-    /// How, in a few words.
+    /// Description of the breach, in a few words.
     pub how: String,
 }

@@ -5,8 +5,8 @@ use crate::run::{Cancelled, RunSettings};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Samples that one task evaluates one after the other, each starting from what the last one found. Fewer: the
-/// first of a task, which starts from nothing, counts; more: cancelling takes longer.
+/// Samples that one task evaluates one after the other, each starting from what the last one found.
+/// Fewer: the first of a task, which starts from nothing, counts; more: cancelling takes longer.
 const TASK: usize = 2048;
 
 /// Random numbers that depend on nothing but the seed and what they are for.
@@ -42,8 +42,8 @@ impl Random {
     }
 }
 
-/// Items drawn in proportion to their weights, one from each of equal parts of the total weight: so the draw
-/// is uniform and even at once, and neighbours in the list are neighbours in the draw.
+/// Items drawn in proportion to their weights, one from each of equal parts of the total weight: so
+/// the draw is uniform and even at once, and neighbours in the list are neighbours in the draw.
 #[derive(Debug)]
 pub(super) struct Draw {
     /// Sums of the weights up to each item.
@@ -65,7 +65,7 @@ impl Draw {
         self.sums.last().copied().unwrap_or(0.0)
     }
 
-    /// How many samples can be drawn of `wanted`: none without weight.
+    /// Returns the number of samples that can be drawn of `wanted`: none without weight.
     pub fn available(&self, wanted: usize) -> usize {
         if self.total() > 0.0 { wanted } else { 0 }
     }
@@ -78,8 +78,8 @@ impl Draw {
     }
 }
 
-/// `evaluate` for samples 0 to `count`, in order; each is given what the one before it left as a guess. The
-/// guess must not change a result.
+/// `evaluate` for samples 0 to `count`, in order; each is given what the one before it left as a
+/// guess. The guess must not change a result.
 ///
 /// # Errors
 /// [`Cancelled`].

@@ -1,4 +1,4 @@
-//! What to judge by.
+//! Settings of a verification.
 
 use super::error::VerifyError;
 use crate::quantity::Length;
@@ -6,34 +6,37 @@ use crate::quantity::Length;
 /// The seed when none is given; any would do.
 pub const DEFAULT_SEED: u64 = 1;
 
-/// Area-uniform samples when no number is given: the mean of an error is then known to about 0.3% of its
-/// spread. Ten times as many would take most of the time.
+/// Area-uniform samples when no number is given: the mean of an error is then known to about 0.3%
+/// of its spread. Ten times as many would take most of the time.
 pub const DEFAULT_SAMPLES: usize = 200_000;
 
-/// The most samples: they take about 90 bytes each, and the mean of an error is known to 0.03% of its spread.
+/// The most samples: they take about 90 bytes each, and the mean of an error is known to 0.03% of
+/// its spread.
 pub const MOST_SAMPLES: usize = 20_000_000;
 
-/// What to judge OUTPUT by.
+/// Settings that OUTPUT is judged by.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VerifySettings {
     /// The signed distance that OUTPUT is said to be at: positive grown, negative shrunk.
     pub distance: Length,
-    /// Voxel size in model units, for errors in voxels. Without it the limits for creases are taken from the
-    /// mean size of OUTPUT's triangles.
+    /// Voxel size in model units, for errors in voxels. Without it the limits for creases are taken
+    /// from the mean size of OUTPUT's triangles.
     pub voxel: Option<f64>,
-    /// The largest error allowed in model units, either way; `None` promises nothing about distances.
+    /// The largest error allowed in model units, either way; `None` promises nothing about
+    /// distances.
     pub tolerance: Option<f64>,
     /// Area-uniform samples on OUTPUT, and on INPUT for what is missing: 1 to [`MOST_SAMPLES`].
     pub samples: usize,
     /// Seed of the samples. The same seed gives the same report, for every number of threads.
     pub seed: u64,
-    /// Creases are traced from edges of INPUT whose triangles' normals differ by more than this, in degrees.
+    /// Creases are traced from edges of INPUT whose triangles' normals differ by more than this, in
+    /// degrees.
     pub crease_angle: f64,
-    /// What OUTPUT is.
+    /// Kind of OUTPUT.
     pub subject: Subject,
 }
 
-/// What OUTPUT is.
+/// Kind of a mesh that is judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Subject {
     /// The offset surface alone.
@@ -60,8 +63,8 @@ impl Default for VerifySettings {
     }
 }
 
-/// The usual limit between a crease and a curved surface's facets. Smaller, and coarse spheres are full of
-/// creases; larger, and chamfers lose theirs.
+/// The usual limit between a crease and a curved surface's facets. Smaller, and coarse spheres are
+/// full of creases; larger, and chamfers lose theirs.
 const DEFAULT_CREASE_ANGLE: f64 = 30.0;
 
 impl VerifySettings {

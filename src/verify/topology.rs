@@ -1,4 +1,4 @@
-//! How triangles, edges and vertices hang together.
+//! Topology: how triangles, edges and vertices hang together.
 
 use super::report::TopologyReport;
 use super::welded::Welded;
@@ -7,7 +7,8 @@ use crate::mesh::TriMesh;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// A triangle with an angle below this, in degrees, is a sliver: its normal has lost about two digits.
+/// A triangle with an angle below this, in degrees, is a sliver: its normal has lost about two
+/// digits.
 const SLIVER: f64 = 1.0;
 
 /// The topology of a welded mesh. Runs on the current rayon pool.

@@ -5,12 +5,13 @@ use crate::geom::predicates::projection_axis;
 use crate::mesh::{CleanReport, Topology, TriMesh, weld};
 use rayon::prelude::*;
 
-/// A mesh whose vertices have different positions, and whose triangles have three different vertices.
+/// A mesh whose vertices have different positions, and whose triangles have three different
+/// vertices.
 #[derive(Debug)]
 pub(super) struct Welded {
     pub mesh: TriMesh,
     pub topology: Topology,
-    /// What welding did.
+    /// Report of the welding.
     pub report: CleanReport,
     /// Triangles of the file with two corners at one position, ascending. They are not in `mesh`.
     pub collapsed: Vec<u32>,

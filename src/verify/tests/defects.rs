@@ -92,7 +92,8 @@ fn two_spheres_pushed_through_each_other() {
 
 #[test]
 fn a_fold() {
-    // A vertex of a flat face pulled over its neighbours, within the plane: coplanar overlaps that share edges.
+    // A vertex of a flat face pulled over its neighbours, within the plane: coplanar overlaps that
+    // share edges.
     let mut mesh = shapes::cube(4);
     let inner = |v: &[f64; 3]| v[2] == 1.0 && v[0].abs() < 0.99 && v[1].abs() < 0.99;
     let v = mesh.vertices.iter().position(inner).unwrap();

@@ -78,8 +78,8 @@ fn edges_moved_off_a_crease_are_no_longer_along_it() {
 fn a_grown_sphere_against_a_scaled_one() {
     let (input, r) = (shapes::sphere(24), 0.3);
     let report = judge(&input, &scaled(&input, 1.0 + r), &at(r));
-    // Vertices of the scaled sphere are outside of vertices: exact. Faces are between 1.3 of the inscribed
-    // radius and it: an error of 0.3 times the height of the unit sphere's facets.
+    // Vertices of the scaled sphere are outside of vertices: exact. Faces are between 1.3 of the
+    // inscribed radius and it: an error of 0.3 times the height of the unit sphere's facets.
     assert!(report.distance.vertices.max.units < 1e-12);
     let height = input.triangles.iter().map(|t| {
         let c: [f64; 3] =

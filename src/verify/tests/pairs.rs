@@ -10,7 +10,8 @@ fn audit(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Soundness {
 
 const BASE: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
 
-/// The number of intersections of the base triangle with another one that shares its first vertices.
+/// The number of intersections of the base triangle with another one that shares its first
+/// vertices.
 fn against_base(shared: usize, others: &[[f64; 3]]) -> u64 {
     let mut vertices = BASE.to_vec();
     vertices.extend(others);
