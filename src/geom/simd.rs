@@ -13,7 +13,51 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
 /// Runs a kernel.
 #[inline(always)]
 pub fn dispatch<K: WithSimd>(kernel: K) -> K::Output {
-    Arch::new().dispatch(kernel)
+    instructions().dispatch(kernel)
+}
+
+/// Returns the widest instructions that the machine has.
+#[cfg(not(test))]
+#[inline(always)]
+fn instructions() -> Arch {
+    Arch::new()
+}
+
+/// Returns the instructions that a test asked for; by itself the widest.
+#[cfg(test)]
+fn instructions() -> Arch {
+    if scalar::IS_ON.load(std::sync::atomic::Ordering::Relaxed) { Arch::Scalar } else { Arch::new() }
+}
+
+/// Kernels without vectors, for tests that compare results.
+#[cfg(test)]
+pub(crate) mod scalar {
+    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::sync::{Mutex, PoisonError};
+
+    /// Whether kernels take one number at a time, on all threads.
+    pub(super) static IS_ON: AtomicBool = AtomicBool::new(false);
+
+    /// Held by the test that compares: what runs beside it may be either way, as it is the same.
+    static TURN: Mutex<()> = Mutex::new(());
+
+    /// Switches back, also after a panic.
+    struct Scalar;
+
+    impl Drop for Scalar {
+        fn drop(&mut self) {
+            IS_ON.store(false, Ordering::Relaxed);
+        }
+    }
+
+    /// Returns what `work` returns in vectors, and what it returns in scalar code.
+    pub(crate) fn in_vectors_and_scalars<T>(work: impl Fn() -> T) -> [T; 2] {
+        let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        let in_vectors = work();
+        IS_ON.store(true, Ordering::Relaxed);
+        let _until_the_end = Scalar;
+        [in_vectors, work()]
+    }
 }
 
 macro_rules! lanes {
@@ -382,6 +426,23 @@ mod tests {
             }
             (bits, bytes, least)
         }
+    }
+
+    /// The number of lanes of f32 and of f64.
+    struct Width;
+
+    impl WithSimd for Width {
+        type Output = [usize; 2];
+
+        fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+            [F32s::<S>::COUNT, F64s::<S>::COUNT]
+        }
+    }
+
+    #[test]
+    fn scalar_code_has_one_lane() {
+        let [widest, scalar] = scalar::in_vectors_and_scalars(|| dispatch(Width));
+        assert_eq!((widest, scalar), (Arch::new().dispatch(Width), [1, 1]));
     }
 
     #[test]

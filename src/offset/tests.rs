@@ -1,5 +1,7 @@
 //! The whole way, against closed forms and brute force.
 
+mod simd;
+
 use super::*;
 use crate::band::NearTriangles;
 use crate::band::narrow_band::{self, NarrowBand};

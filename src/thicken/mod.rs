@@ -35,6 +35,8 @@ mod settings;
 mod solid;
 mod statistics;
 mod stitch;
+#[cfg(test)]
+mod tests;
 
 pub use error::{Obstacle, PatchError, ThickenError, ThickenSettingsError};
 pub use pipeline::{ThickenResult, thicken};
