@@ -42,11 +42,12 @@ build: setup
 demo: build
 	@bash scripts/demo.sh '$(MODEL)' '$(D)' $(ARGS)
 
+# Names at the end what was not run, and why; EXOCARP_MODELS=dir for the tests with models.
 test: setup
-	cargo test --locked
+	@bash scripts/test.sh
 
 test-full: setup
-	EXOCARP_HEAVY=1 cargo test --profile heavy --locked
+	@EXOCARP_HEAVY=1 bash scripts/test.sh --profile heavy
 
 lint: setup
 	cargo fmt --check

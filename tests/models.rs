@@ -1,11 +1,15 @@
-//! The models of the models directory load, clean up and survive a round trip through every format.
-//! The directory is `EXOCARP_MODELS`, or `../shared/models` beside the crate.
+//! The public test models, from the directory `EXOCARP_MODELS`: each loads, cleans up, survives a round
+//! trip through every format, and, with `EXOCARP_HEAVY=1`, is offset and judged.
 
-use std::path::PathBuf;
+mod common;
 
+use common::models::path;
 use exocarp::io::{SaveOptions, load, save};
-use exocarp::mesh::clean;
-use exocarp::quantity::Precision;
+use exocarp::mesh::{Topology, clean};
+use exocarp::offset::{OffsetError, OffsetSettings, OpenInput, offset};
+use exocarp::quantity::{Length, Precision, VoxelSize};
+use exocarp::run::RunSettings;
+use exocarp::verify::{VerifySettings, soundness, verify};
 
 /// The models with their numbers of triangles in the file.
 const MODELS: [(&str, usize); 17] = [
@@ -28,40 +32,96 @@ const MODELS: [(&str, usize); 17] = [
     ("teapot.obj", 6320),
 ];
 
-fn models() -> PathBuf {
-    let default = || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/models");
-    std::env::var_os("EXOCARP_MODELS").map_or_else(default, PathBuf::from)
+mod needs_models {
+    use super::*;
+
+    #[test]
+    #[ignore = "needs the test models (EXOCARP_MODELS)"]
+    fn each_model_loads_and_comes_back_from_every_format() {
+        let directory = tempfile::tempdir().unwrap();
+        for (name, triangles) in MODELS {
+            let raw = load(&path(name)).unwrap();
+            assert_eq!(raw.triangles.len(), triangles, "{name}");
+            let (mesh, report) = clean(raw);
+            eprintln!("{name}: {report}");
+            assert!(!mesh.triangles.is_empty(), "{name}");
+            assert!(clean(mesh.clone()).1.is_clean(), "{name}");
+
+            // The largest model would only take long.
+            let extensions: &[&str] = if triangles > 100_000 { &["ply"] } else { &["ply", "obj", "off"] };
+            for extension in extensions {
+                let copy = directory.path().join(name).with_extension(extension);
+                save(&mesh, &copy, &SaveOptions { precision: Precision::F64 }).unwrap();
+                let again = load(&copy).unwrap();
+                assert_eq!(again.triangles, mesh.triangles, "{}", copy.display());
+                let single = |v: &[f64; 3]| v.map(|x| x as f32);
+                assert!(again.vertices.iter().map(single).eq(mesh.vertices.iter().map(single)));
+            }
+            let copy = directory.path().join("copy.stl");
+            mesh.save(&copy).unwrap();
+            let (_, report) = clean(load(&copy).unwrap());
+            assert!(report.welded_vertices >= 3 * mesh.triangles.len() - mesh.vertices.len(), "{name}");
+        }
+    }
 }
 
-#[test]
-fn each_model_loads_and_comes_back_from_every_format() {
-    let directory = tempfile::tempdir().unwrap();
-    for (name, triangles) in MODELS {
-        let path = models().join(name);
-        if !path.exists() {
-            eprintln!("skipped: {name} (no file {})", path.display());
-            continue;
-        }
-        let raw = load(&path).unwrap();
-        assert_eq!(raw.triangles.len(), triangles, "{name}");
-        let (mesh, report) = clean(raw);
-        eprintln!("{name}: {report}");
-        assert!(!mesh.triangles.is_empty(), "{name}");
-        assert!(clean(mesh.clone()).1.is_clean(), "{name}");
+/// What the error of an offset may be, in voxels, on the mean over its surface and at the most. Without
+/// `--tolerance`, fillets are polyhedra of chords of a voxel, and creases that other ones are in the way
+/// of end a cell early.
+const MOST_MEAN_ERROR: f64 = 0.02;
+const MOST_ERROR: f64 = 1.0;
 
-        // The largest model would only take long.
-        let extensions: &[&str] = if triangles > 100_000 { &["ply"] } else { &["ply", "obj", "off"] };
-        for extension in extensions {
-            let copy = directory.path().join(name).with_extension(extension);
-            save(&mesh, &copy, &SaveOptions { precision: Precision::F64 }).unwrap();
-            let again = load(&copy).unwrap();
-            assert_eq!(again.triangles, mesh.triangles, "{}", copy.display());
-            let single = |v: &[f64; 3]| v.map(|x| x as f32);
-            assert!(again.vertices.iter().map(single).eq(mesh.vertices.iter().map(single)));
+/// Offsets a model at all settings and judges what comes of it. Returns how many results were made.
+fn offset_and_judge(name: &str) -> usize {
+    let run = RunSettings::with_threads(2).unwrap();
+    let (mesh, _) = clean(load(&path(name)).unwrap());
+    let is_closed = Topology::new(&mesh).defects().is_closed();
+    let mut made = 0;
+    for resolution in [128, 256] {
+        for fraction in [0.02, 0.0, -0.01] {
+            let settings = OffsetSettings {
+                distance: Length::DiagonalFraction(fraction),
+                voxel: VoxelSize::Resolution(resolution),
+                // Inside and outside of an open model are a guess, and the promise holds all the same.
+                open_input: if is_closed { OpenInput::Refuse } else { OpenInput::Accept },
+                ..OffsetSettings::default()
+            };
+            let what = format!("{name} {fraction} {resolution}");
+            let result = match offset(&mesh, &settings, &run) {
+                Err(OffsetError::Empty(_)) if fraction < 0.0 => continue,
+                result => result.expect(&what),
+            };
+            made += 1;
+            let broken = soundness(&result.mesh, &run).unwrap().broken();
+            assert!(broken.is_empty(), "{what}: {broken:?}");
+            if is_closed {
+                let settings = VerifySettings {
+                    distance: settings.distance,
+                    voxel: Some(result.statistics.voxel),
+                    ..VerifySettings::default()
+                };
+                let report = verify(&mesh, &result.mesh, &settings, &run).unwrap();
+                let voxels = |length: exocarp::verify::ReportedLength| length.voxels.unwrap();
+                let (mean, max) = (voxels(report.distance.surface.mean), voxels(report.distance.max));
+                eprintln!("{what}: mean {mean:.4}, max {max:.3} voxels");
+                assert!(mean < MOST_MEAN_ERROR && max < MOST_ERROR, "{what}: {mean} {max}");
+            }
         }
-        let copy = directory.path().join("copy.stl");
-        mesh.save(&copy).unwrap();
-        let (_, report) = clean(load(&copy).unwrap());
-        assert!(report.welded_vertices >= 3 * mesh.triangles.len() - mesh.vertices.len(), "{name}");
+    }
+    made
+}
+
+mod long {
+    mod needs_models {
+        use super::super::*;
+
+        #[test]
+        #[ignore = "takes minutes, and needs the test models (EXOCARP_HEAVY=1, EXOCARP_MODELS)"]
+        fn each_model_is_offset_and_judged() {
+            for (name, _) in MODELS {
+                // Each grows and is made anew, at two resolutions.
+                assert!(offset_and_judge(name) >= 4, "{name}");
+            }
+        }
     }
 }

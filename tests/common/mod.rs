@@ -1,6 +1,7 @@
 //! Running the program.
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
+pub mod models;
 pub mod random;
 pub mod small_meshes;
 pub mod thickened;

@@ -3,5 +3,5 @@
 mod files;
 mod grids;
 mod offsets;
-mod python;
+mod needs_python;
 mod sphere;

@@ -194,12 +194,14 @@ fn all_pairs_on_small_grids() {
     }
 }
 
-#[test]
-#[ignore = "takes minutes: runs with EXOCARP_HEAVY=1 (make test-full)"]
-fn all_pairs_on_a_grid_of_27_nodes() {
-    let [pairs, meeting] = check_all_pairs([3, 3, 3]);
-    assert_eq!(pairs, 2_876 * 2_877);
-    assert!(pairs / 4 < meeting && meeting < pairs, "{meeting} of {pairs}");
+mod long {
+    #[test]
+    #[ignore = "takes minutes (EXOCARP_HEAVY=1)"]
+    fn all_pairs_on_a_grid_of_27_nodes() {
+        let [pairs, meeting] = super::check_all_pairs([3, 3, 3]);
+        assert_eq!(pairs, 2_876 * 2_877);
+        assert!(pairs / 4 < meeting && meeting < pairs, "{meeting} of {pairs}");
+    }
 }
 
 /// Moves a coordinate by some units in its last place.
