@@ -28,14 +28,14 @@ pub struct BandSettings {
 }
 
 impl BandSettings {
-    /// The value of nodes outside the band, as stored.
+    /// Returns the value of nodes outside the band, as stored.
     pub fn background(&self) -> f32 {
         self.lattice.background(self.half_width)
     }
 }
 
-/// The nodes of the grid: from the first to the second, inclusive. They enclose the model and, when
-/// growing, its offset surface, with the band.
+/// Returns the nodes of the grid: from the first to the second, inclusive. They enclose the model
+/// and, when growing, its offset surface, with the band.
 pub fn grid_nodes(bounds: Aabb, settings: &BandSettings) -> [Ijk; 2] {
     let bounds = bounds.grown(settings.r.max(0.0) + settings.half_width * settings.lattice.voxel);
     let index = |x: f64| (x / settings.lattice.voxel) as i32;
@@ -321,8 +321,8 @@ impl<P: LeafPolicy> Worker<'_, P> {
         }
     }
 
-    /// The sign of the distance in all of a block whose centre has the signed distance `centre`,
-    /// where that is farther from the surface than any node is from the centre.
+    /// Returns the sign of the distance in all of a block whose centre has the signed distance
+    /// `centre`, where that is farther from the surface than any node is from the centre.
     pub(super) fn side_around(&self, block: Block, centre: f64) -> Option<f64> {
         let is_far = centre.abs() > block.radius(self.filter.lattice) * (1.0 + 1e-9);
         is_far.then_some(1f64.copysign(centre))

@@ -83,9 +83,9 @@ impl Leaf {
     }
 }
 
-/// The blocks of 2^3 nodes, by number, with a node that is the lowest one of a cell with nodes on
-/// both sides of the surface, or may be: nodes beyond the leaf are taken to be on the side of the
-/// nearest node in it, unless that is in the band.
+/// Returns the blocks of 2^3 nodes, by number, with a node that is the lowest one of a cell with
+/// nodes on both sides of the surface, or may be: nodes beyond the leaf are taken to be on the side
+/// of the nearest node in it, unless that is in the band.
 pub(super) fn blocks_with_crossed_cells(inside: &LeafMask, active: &LeafMask) -> u64 {
     let outside = inside.map(|word| !word);
     let [inside, outside, active] = [inside, &outside, active].map(in_any_corner);
@@ -105,7 +105,7 @@ pub(super) fn blocks_with_crossed_cells(inside: &LeafMask, active: &LeafMask) ->
 /// The bits with y = 7 in a word of a [`LeafMask`].
 const Y_LAST: u64 = 0xff << 56;
 
-/// The nodes that are in a mask, or one step along some of the axes before one that is.
+/// Returns the nodes that are in a mask, or one step along some of the axes before one that is.
 fn in_any_corner(mask: &LeafMask) -> LeafMask {
     std::array::from_fn(|x| {
         let along_x = mask[x] | mask.get(x + 1).copied().unwrap_or(0);

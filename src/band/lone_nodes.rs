@@ -150,8 +150,8 @@ impl Search<'_> {
     }
 }
 
-/// The nodes of a leaf whose six neighbours are all on the other side. Where the field ends,
-/// neighbours count as being on the same side.
+/// Returns the nodes of a leaf whose six neighbours are all on the other side. Where the field
+/// ends, neighbours count as being on the same side.
 fn lone_in(signs: &SignField, leaf: LeafId) -> LeafMask {
     let own = signs.inside(leaf);
     if *own == [0; 8] || *own == [!0; 8] {

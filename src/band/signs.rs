@@ -31,11 +31,11 @@ fn neighbour_slot(delta: [i32; 3]) -> usize {
 }
 
 impl SignField {
-    /// The field of the leaves given by `origins` and `inside` masks, in any order, no origin
-    /// twice. `missing` is asked once for all neighbouring leaves that the band lacks (a sorted
-    /// list of their origins): whether each is inside as a whole. Such a leaf is uniform in every
-    /// band, since a node next to a sign change is valid (\[LW11\] Definition 1) and thus in a leaf
-    /// of the band.
+    /// Returns the field of the leaves given by `origins` and `inside` masks, in any order, no
+    /// origin twice. `missing` is asked once for all neighbouring leaves that the band lacks (a
+    /// sorted list of their origins): whether each is inside as a whole. Such a leaf is uniform in
+    /// every band, since a node next to a sign change is valid (\[LW11\] Definition 1) and thus in
+    /// a leaf of the band.
     ///
     /// Where what `slab` computes ends, there is no ring: the field is cut off, and so is the
     /// surface.
@@ -159,7 +159,7 @@ mod tests {
     use super::*;
     use std::convert::Infallible;
 
-    /// A field on 3 x 3 x 3 leaves whose nodes are inside by a rule, the ring outside.
+    /// Returns a field on 3 x 3 x 3 leaves whose nodes are inside by a rule, the ring outside.
     fn field(rule: impl Fn(Ijk) -> bool) -> SignField {
         let mut origins = Vec::new();
         for n in 0..27 {

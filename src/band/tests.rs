@@ -9,7 +9,7 @@ use crate::run::{Cancelled, RunSettings};
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// An octahedron of circumradius 1 around a centre off the lattice.
+/// Returns an octahedron of circumradius 1 around a centre off the lattice.
 fn octahedron() -> TriMesh {
     let c = [0.03, -0.01, 0.02];
     let vertex =

@@ -7,8 +7,8 @@ use crate::ssvh::Ssvh;
 use glam::DVec3;
 use proptest::prelude::*;
 
-/// A mesh whose triangles have nothing to do with one another, among them needles and one that is
-/// larger than all else.
+/// Returns a mesh whose triangles have nothing to do with one another, among them needles and one
+/// that is larger than all else.
 fn soup(corners: &[[[f64; 3]; 3]]) -> TriMesh {
     let vertices: Vec<[f64; 3]> = corners.iter().flatten().copied().collect();
     let triangles = (0..corners.len() as u32).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect();

@@ -196,7 +196,7 @@ pub(crate) fn contour_by_edge(
         let PlacedVertices { cells, faces, vertices, .. } = placed;
         let Triangulation { mesh, sizes, .. } = triangulate(&cells, &faces, vertices, settings.cut, phase)?;
         let mut mesh = mesh.into_ordered().mesh;
-        if crossings.numbers.is_open() {
+        if crossings.numbers.is_partial() {
             mesh.drop_unreferenced_vertices(0);
         }
         Ok((mesh, sizes))

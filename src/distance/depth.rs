@@ -1,4 +1,4 @@
-//! How deep a solid is: the radius of its largest inscribed ball, by branch and bound.
+//! Depth of a solid: the radius of its largest inscribed ball, by branch and bound.
 
 use super::SignedDistance;
 use crate::geom::aabb::Aabb;
@@ -6,26 +6,29 @@ use crate::run::{Cancelled, RunSettings};
 use glam::DVec3;
 use std::collections::BinaryHeap;
 
-/// Boxes that are looked at, at most. In plates and needles nearly every box could hold the deepest point, and a search to
-/// the last digit does not end. This many take 2 MB, and a tenth of a second to a second.
-const MOST_BOXES: usize = 15_000;
+/// The most boxes that are looked at. In plates and needles nearly every box could hold the deepest
+/// point, and a search to the last digit does not end. This number takes 2 MB, and a tenth of a
+/// second to a second.
+const MAX_BOXES: usize = 15_000;
 
-/// Boxes between two looks at whether the run is cancelled.
+/// Number of boxes between two looks at the cancel token.
 const BETWEEN_CHECKS: usize = 256;
 
-/// What is thinner than this part of the model is as good as flat, and ends the search.
+/// Depth, relative to the model's half-extent, below which a solid is as good as flat and the
+/// search ends.
 const NEGLIGIBLE: f64 = 1e-6;
 
 /// Bounds of the radius of the largest ball inside a solid, in model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Depth {
-    /// A point this far inside was seen; 0 when none was.
+    /// Depth of the deepest point that was seen; 0 when none was inside.
     pub at_least: f64,
-    /// No point is farther inside.
+    /// Bound that no point is deeper than.
     pub at_most: f64,
 }
 
-/// Searches the deepest inside point, until its depth is known to `relative` (say 1e-3) or the work is no longer worth it.
+/// Searches the deepest inside point, until its depth is known to `relative` (say 1e-3) or the work
+/// is no longer worth it.
 ///
 /// Boxes are halved in the order of how deep a point in them could be.
 ///
@@ -44,13 +47,13 @@ pub fn largest_depth(
     let negligible = NEGLIGIBLE * half.max_element();
     let mut looked_at = 1;
     while let Some(widest) = open.pop() {
-        if looked_at >= MOST_BOXES || widest.bound <= deepest * (1.0 + relative) + negligible {
+        if looked_at >= MAX_BOXES || widest.bound <= deepest * (1.0 + relative) + negligible {
             return Ok(Depth { at_least: deepest, at_most: widest.bound.max(deepest) });
         }
         if looked_at % BETWEEN_CHECKS < 2 {
             run.check()?;
         }
-        for child in widest.halves(distance, &mut deepest) {
+        for child in widest.halved(distance, &mut deepest) {
             looked_at += 1;
             if child.bound > deepest {
                 open.push(child);
@@ -64,7 +67,7 @@ pub fn largest_depth(
 struct SearchBox {
     centre: DVec3,
     half: DVec3,
-    /// No point of the box is deeper than this.
+    /// Bound that no point of the box is deeper than, in model units.
     bound: f64,
     /// The triangle that is closest to the centre.
     near: u32,
@@ -84,7 +87,7 @@ impl SearchBox {
         SearchBox { centre, half, bound, near: sample.triangle }
     }
 
-    fn halves(&self, distance: &SignedDistance, deepest: &mut f64) -> [SearchBox; 2] {
+    fn halved(&self, distance: &SignedDistance, deepest: &mut f64) -> [SearchBox; 2] {
         let axis = (0..3).fold(0, |a, b| if self.half[b] > self.half[a] { b } else { a });
         let mut half = self.half;
         half[axis] *= 0.5;
@@ -96,10 +99,12 @@ impl SearchBox {
     }
 }
 
-/// No inside point of a box is deeper than this, which is at most half of the way from one triangle to the other.
+/// Returns a depth that no inside point of a box exceeds: at most half of the way from one triangle
+/// to the other.
 ///
-/// A point is no deeper than its distance from either triangle, so no deeper than their mean. That is a convex function, and on a
-/// box largest at a corner. Between the sides of a plate it is half of the thickness, however large the box.
+/// A point is no deeper than its distance from either triangle, so no deeper than their mean. That
+/// is a convex function, and on a box largest at a corner. Between the sides of a plate it is half
+/// of the thickness, however large the box.
 fn between(distance: &SignedDistance, centre: DVec3, half: DVec3, near: [u32; 2]) -> f64 {
     let corners = (0..8).map(|n| {
         let sign = |bit: i32| if n >> bit & 1 == 1 { 1.0 } else { -1.0 };

@@ -1,5 +1,5 @@
-//! Signed distance to a mesh: closest point by the hierarchy, sign by the angle-weighted pseudonormal
-//! (Baerentzen and Aanaes 2005).
+//! Signed distance to a mesh: closest point by the hierarchy, sign by the angle-weighted
+//! pseudonormal (Baerentzen and Aanaes 2005).
 
 mod depth;
 mod pseudonormal;

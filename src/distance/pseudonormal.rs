@@ -1,8 +1,8 @@
 //! Angle-weighted pseudonormals of faces, edges and vertices.
 //!
-//! With p outside every closed, consistently oriented surface and c its closest point,
-//! (p - c) . pseudonormal(c) > 0; inside it is negative. For an edge the two triangles have the same
-//! angle, so their normals are summed; for a vertex each triangle counts by its angle there.
+//! With p outside every closed, consistently oriented surface and c its closest point, (p - c) .
+//! pseudonormal(c) > 0; inside it is negative. For an edge the two triangles have the same angle,
+//! so their normals are summed; for a vertex each triangle counts by its angle there.
 
 use crate::geom::triangle::{Feature, Side, Triangle};
 use crate::mesh::{Topology, TriMesh};
@@ -12,15 +12,17 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Angle-weighted sums per vertex; edges and faces follow from the triangles.
 ///
-/// A vertex has its sum when it is first asked for: of a mesh whose triangles are small beside the voxels most vertices never are.
-/// Threads that ask at the same time compute the same numbers, so it does not matter whose stay.
+/// The sum of a vertex is made when it is first asked for; most vertices of a mesh whose triangles
+/// are small beside the voxels never are. Threads that ask at the same time compute the same
+/// numbers, so it does not matter whose stay.
 #[derive(Debug)]
 pub(super) struct Pseudonormals {
-    /// The bits of each coordinate and one: 0 as long as it is not known. No sum is the number that is not one with all bits.
+    /// The bits of each coordinate, plus one; 0 as long as the sum is not known. No sum is the one
+    /// NaN whose bits are all set.
     by_vertex: Vec<[AtomicU64; 3]>,
 }
 
-/// What the pseudonormals are those of.
+/// The mesh that the pseudonormals belong to, with its topology and hierarchy.
 #[derive(Clone, Copy)]
 pub(super) struct Oriented<'a> {
     pub(super) mesh: &'a TriMesh,
@@ -33,7 +35,8 @@ impl Pseudonormals {
         Pseudonormals { by_vertex: bytemuck::zeroed_vec(mesh.vertices.len()) }
     }
 
-    /// The pseudonormal, not normalised, of a feature of triangle `id`. Always of the same mesh.
+    /// Returns the pseudonormal, not normalised, of a feature of triangle `id`. `oriented` is
+    /// always the same mesh.
     pub(super) fn of(&self, oriented: Oriented<'_>, id: u32, feature: Feature) -> DVec3 {
         let Oriented { mesh, topology, triangles } = oriented;
         let vertex = |side: Side| self.at_vertex(oriented, mesh.triangles[id as usize][side.index()]);
@@ -66,7 +69,7 @@ impl Pseudonormals {
     }
 }
 
-/// The normal of `triangle` times its angle at mesh vertex `v`.
+/// Returns the normal of `triangle` times its angle at mesh vertex `v`.
 fn angle_weighted(triangle: &Triangle, vertices: [u32; 3], v: u32) -> DVec3 {
     let Some(&side) = Side::ALL.iter().find(|s| vertices[s.index()] == v) else { return DVec3::ZERO };
     let corner = triangle.corners[side.index()];

@@ -39,27 +39,27 @@ impl<'m> SignedDistance<'m> {
         SignedDistance { mesh, topology, ssvh, pseudonormals }
     }
 
-    /// The mesh.
+    /// Returns the mesh.
     pub fn mesh(&self) -> &'m TriMesh {
         self.mesh
     }
 
-    /// The mesh's topology.
+    /// Returns the mesh's topology.
     pub fn topology(&self) -> &'m Topology {
         self.topology
     }
 
-    /// The hierarchy over the mesh's triangles.
+    /// Returns the hierarchy over the mesh's triangles.
     pub fn ssvh(&self) -> &Ssvh {
         &self.ssvh
     }
 
-    /// The signed distance at `p`; `guess` is a triangle that may be near, for speed only.
+    /// Returns the signed distance at `p`; `guess` is a triangle that may be near, for speed only.
     pub fn at(&self, p: DVec3, guess: u32) -> Sample {
         self.from_triangle(p, self.ssvh.closest_from(p, guess).triangle)
     }
 
-    /// The signed distance at `p` when `triangle` is known to be the closest.
+    /// Returns the signed distance at `p` when `triangle` is known to be the closest.
     pub fn from_triangle(&self, p: DVec3, triangle: u32) -> Sample {
         let ClosestPoint { point, distance_squared, feature } = self.ssvh.triangle(triangle).closest(p);
         let side = (p - point).dot(self.pseudonormal(triangle, feature));
@@ -68,15 +68,15 @@ impl<'m> SignedDistance<'m> {
         Sample { distance, triangle, closest: point, feature }
     }
 
-    /// The angle-weighted pseudonormal of a feature, not normalised; points outward.
+    /// Returns the angle-weighted pseudonormal of a feature, not normalised; points outward.
     pub fn pseudonormal(&self, triangle: u32, feature: Feature) -> DVec3 {
         let oriented = Oriented { mesh: self.mesh, topology: self.topology, triangles: &self.ssvh };
         self.pseudonormals.of(oriented, triangle, feature)
     }
 
-    /// The unit gradient of the distance at `p`, where `sample` was taken: the normal of the offset surface
-    /// through `p`, outward. On the surface itself, where the direction to the closest point vanishes
-    /// (nearer than `vanishing`), the pseudonormal takes its place.
+    /// Returns the unit gradient of the distance at `p`, where `sample` was taken: the normal of
+    /// the offset surface through `p`, outward. On the surface itself, where the direction to the
+    /// closest point vanishes (nearer than `vanishing`), the pseudonormal takes its place.
     pub fn gradient(&self, p: DVec3, sample: &Sample, vanishing: f64) -> DVec3 {
         if sample.feature != Feature::Face && sample.distance.abs() > vanishing {
             return (p - sample.closest) / sample.distance;

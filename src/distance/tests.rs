@@ -4,7 +4,7 @@ use crate::run::RunSettings;
 use glam::DVec3;
 use proptest::prelude::*;
 
-/// A box with given half-extents, moved, each face two triangles.
+/// Returns a box with given half-extents, moved, each face two triangles.
 fn cuboid(half: [f64; 3], centre: DVec3) -> TriMesh {
     let corner = |n: usize| {
         let s = |bit: usize| if n >> bit & 1 == 1 { 1.0 } else { -1.0 };
@@ -74,7 +74,7 @@ fn inside_by_parity(mesh: &TriMesh, p: DVec3) -> bool {
     crossings.count() % 2 == 1
 }
 
-/// A star-shaped solid with deep folds and sharp spikes.
+/// Returns a star-shaped solid with deep folds and sharp spikes.
 fn spiky(rings: usize, sectors: usize) -> TriMesh {
     let mut mesh = TriMesh::default();
     let radius = |i: usize, j: usize| {
@@ -154,7 +154,8 @@ fn depth_of(mesh: &TriMesh, relative: f64) -> Depth {
 
 #[test]
 fn the_depth_of_plates_and_needles_is_bounded_in_a_bounded_search() {
-    // Every part of a plate is as deep as any other: a search that has to look at all of it does not end.
+    // Every part of a plate is as deep as any other: a search that has to look at all of it does
+    // not end.
     for half in [[127.5f64, 138.5, 1.5], [100.0, 1e-3, 1e-3], [5.0, 4.0, 1e-9]] {
         let (longest, thinnest) = (half[0].max(half[1]), half[1].min(half[2]));
         let depth = depth_of(&cuboid(half, DVec3::ZERO), 1e-3);

@@ -1,11 +1,11 @@
-//! Plain bisection: the straightforward way that the hybrid solver replaces (\[LW11\] section V), kept to
-//! measure what the closed forms save (Table V).
+//! Plain bisection: the straightforward way that the hybrid solver replaces (\[LW11\] section V),
+//! kept to measure what the closed forms save (Table V).
 
 use super::hybrid::{End, GridEdge, Root, SHORTEST, Solver};
 use super::statistics::EdgeStatistics;
 
-/// Halves the edge until a middle has abs(phi) up to `tolerance` voxels. Entry n of `by_subdivision` counts
-/// the edges that are solved by n halvings.
+/// Halves the edge until a middle has abs(phi) up to `tolerance` voxels. Entry n of
+/// `by_subdivision` counts the edges that are solved by n halvings.
 pub(super) fn solve(
     solver: &Solver<'_>,
     edge: &GridEdge,

@@ -1,17 +1,19 @@
-//! Where a segment reaches the offset distance from one triangle, in closed form (\[LW11\] section V.B).
+//! Closed forms of the root on a segment for one triangle (\[LW11\] section V.B, Remarks 5, 6 and
+//! 7).
 
 use super::triangle_regions::{Interval, walk};
 use crate::geom::roots::quadratic;
 use crate::geom::triangle::{Feature, Triangle};
 use glam::DVec3;
 
-/// How far beyond an interval's ends a root may lie and still belong to it: two neighbouring intervals round the
-/// plane between them differently.
+/// Parameter beyond an interval's ends up to which a root still belongs to the interval. Two
+/// neighbouring intervals round the plane between them differently.
 const OVERLAP: f64 = 1e-9;
 
-/// The first parameter in 0..=1 at which the point p1 + t (p2 - p1) is at the offset distance `r` from
-/// `triangle`: outside for r > 0, inside for r < 0 (by the triangle's normal), on it for 0. Distances from
-/// edges and vertices have no sign of their own; the caller verifies the root against the whole mesh.
+/// Returns the first parameter in 0..=1 at which the point p1 + t (p2 - p1) is at the offset
+/// distance `r` from `triangle`: outside for r > 0, inside for r < 0 (by the triangle's normal), on
+/// it for 0. Distances from edges and vertices have no sign of their own; the caller verifies the
+/// root against the whole mesh.
 pub(super) fn root(triangle: &Triangle, p1: DVec3, p2: DVec3, r: f64) -> Option<f64> {
     let (feature1, feature2) = (triangle.feature(p1), triangle.feature(p2));
     if feature1 == feature2 {
@@ -31,8 +33,8 @@ fn in_region(triangle: &Triangle, p1: DVec3, p2: DVec3, r: f64, interval: Interv
             let t = (r - (p1 - triangle.corners[0]).dot(triangle.normal)) / slope;
             Some(t).filter(within)
         }
-        // Remark 6: the squared distance from the edge's line is quadratic. The components along the edge
-        // are taken off, which is the paper's two projections in one.
+        // Remark 6: the squared distance from the edge's line is quadratic. The components along
+        // the edge are taken off, which is the paper's two projections in one.
         Feature::Edge(side) => {
             let edge = triangle.edge(side).normalize();
             let across = |v: DVec3| v - edge * v.dot(edge);
@@ -44,7 +46,7 @@ fn in_region(triangle: &Triangle, p1: DVec3, p2: DVec3, r: f64, interval: Interv
     root.map(|t| t.clamp(0.0, 1.0))
 }
 
-/// The first t with |start + t direction| = |r| that `within` accepts.
+/// Returns the first t with |start + t direction| = |r| that `within` accepts.
 fn level(start: DVec3, direction: DVec3, r: f64, within: impl Fn(&f64) -> bool) -> Option<f64> {
     let (a, b) = (direction.length_squared(), 2.0 * start.dot(direction));
     quadratic(a, b, start.length_squared() - r * r).find(within)

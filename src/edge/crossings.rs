@@ -1,8 +1,8 @@
-//! Hermite data: where the offset surface crosses the grid edges, and its normal there.
+//! Hermite data: points where the offset surface crosses grid edges, and normals there.
 //!
 //! Intersected edges are numbered without a hash map: per leaf and axis a 512-bit mask of the nodes
-//! whose edge (to the next node along the axis) changes sign, and the numbers follow the order leaf,
-//! axis, node.
+//! whose edge (to the next node along the axis) changes sign, and the numbers follow the order
+//! leaf, axis, node.
 
 use crate::band::{LeafId, SignField};
 use crate::lattice::{Axis, LeafMask, bits};
@@ -17,12 +17,12 @@ pub struct EdgeId(pub u32);
 /// The numbering of the intersected edges of a [`SignField`].
 #[derive(Clone, Debug, Default)]
 pub struct EdgeNumbers {
-    /// Per leaf how many leaves before it have edges; at the end how many have.
-    places: Vec<u32>,
+    /// Number of leaves with edges before each leaf, and, last, their total number.
+    leaf_ranks: Vec<u32>,
     /// The leaves with edges: a third of all.
     leaves: Vec<LeafEdges>,
     count: u32,
-    is_open: bool,
+    is_partial: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +35,7 @@ struct LeafEdges {
     before: [[u16; 8]; 3],
 }
 
-/// Of a leaf without edges.
+/// The mask of a leaf without edges.
 const NO_EDGES: &LeafMask = &[0; 8];
 
 /// More than 2^32 - 1 grid edges change sign.
@@ -65,7 +65,7 @@ impl EdgeNumbers {
 
     fn of_masks(
         masks: impl IndexedParallelIterator<Item = [LeafMask; 3]>,
-        is_open: bool,
+        is_partial: bool,
     ) -> Result<Self, TooManyEdges> {
         let count = masks.len();
         let of_leaf = |(leaf, masks): (usize, [LeafMask; 3])| {
@@ -82,26 +82,26 @@ impl EdgeNumbers {
             (in_leaf > 0).then_some(edges)
         };
         let mut leaves: Vec<LeafEdges> = masks.enumerate().filter_map(of_leaf).collect();
-        let mut places = Vec::with_capacity(count + 1);
+        let mut leaf_ranks = Vec::with_capacity(count + 1);
         let mut edges: u64 = 0;
-        for (place, leaf) in leaves.iter_mut().enumerate() {
+        for (rank, leaf) in leaves.iter_mut().enumerate() {
             // For the leaves before that have none, too.
-            places.resize(leaf.leaf.0 as usize + 1, place as u32);
+            leaf_ranks.resize(leaf.leaf.0 as usize + 1, rank as u32);
             let next = edges + u64::from(leaf.first);
             leaf.first = u32::try_from(edges).map_err(|_| TooManyEdges)?;
             edges = next;
         }
-        places.resize(count + 1, leaves.len() as u32);
+        leaf_ranks.resize(count + 1, leaves.len() as u32);
         let count = u32::try_from(edges).map_err(|_| TooManyEdges)?;
-        Ok(EdgeNumbers { places, leaves, count, is_open })
+        Ok(EdgeNumbers { leaf_ranks, leaves, count, is_partial })
     }
 
-    /// Whether edges that change sign may have no number.
-    pub fn is_open(&self) -> bool {
-        self.is_open
+    /// Whether the numbering is partial: an edge that changes sign may have no number.
+    pub fn is_partial(&self) -> bool {
+        self.is_partial
     }
 
-    /// The number of intersected edges.
+    /// Returns the number of intersected edges.
     pub fn len(&self) -> usize {
         self.count as usize
     }
@@ -111,28 +111,28 @@ impl EdgeNumbers {
         self.count == 0
     }
 
-    /// The leaves with edges, ascending.
+    /// Returns the leaves with edges, ascending.
     pub fn leaves(&self) -> impl ExactSizeIterator<Item = LeafId> + '_ {
         self.leaves.iter().map(|edges| edges.leaf)
     }
 
-    /// The nodes of `leaf` whose edge along `axis` is intersected.
+    /// Returns the nodes of `leaf` whose edge along `axis` is intersected.
     #[inline]
     pub fn mask(&self, leaf: LeafId, axis: Axis) -> &LeafMask {
         self.of_leaf(leaf).map_or(NO_EDGES, |edges| &edges.masks[axis as usize])
     }
 
-    /// The numbers of the edges that start in `leaf`, a contiguous range.
+    /// Returns the numbers of the edges that start in `leaf`, a contiguous range.
     #[inline]
     pub fn range(&self, leaf: LeafId) -> std::ops::Range<u32> {
         let first = |leaf: usize| {
-            let edges = self.leaves.get(self.places[leaf] as usize);
+            let edges = self.leaves.get(self.leaf_ranks[leaf] as usize);
             edges.map_or(self.count, |edges| edges.first)
         };
         first(leaf.0 as usize)..first(leaf.0 as usize + 1)
     }
 
-    /// The intersected edge from node `number` of `leaf` along `axis`, if there is one.
+    /// Returns the intersected edge from node `number` of `leaf` along `axis`, if there is one.
     #[inline]
     pub fn get(&self, leaf: LeafId, axis: Axis, number: usize) -> Option<EdgeId> {
         let edges = self.of_leaf(leaf)?;
@@ -147,11 +147,12 @@ impl EdgeNumbers {
 
     #[inline]
     fn of_leaf(&self, leaf: LeafId) -> Option<&LeafEdges> {
-        let [place, next] = [0, 1].map(|n| self.places[leaf.0 as usize + n]);
-        (place < next).then(|| &self.leaves[place as usize])
+        let [rank, next] = [0, 1].map(|n| self.leaf_ranks[leaf.0 as usize + n]);
+        (rank < next).then(|| &self.leaves[rank as usize])
     }
 
-    /// The intersected edges that start in `leaf`, as (axis, node number), in the order of their numbers.
+    /// Returns the intersected edges that start in `leaf`, as (axis, node number), in the order of
+    /// their numbers.
     pub fn in_leaf(&self, leaf: LeafId) -> impl Iterator<Item = (Axis, usize)> + '_ {
         Axis::ALL.into_iter().flat_map(move |axis| bits(self.mask(leaf, axis)).map(move |n| (axis, n)))
     }
@@ -162,16 +163,16 @@ impl EdgeNumbers {
 pub struct Crossing {
     /// Position along the edge, in voxels from its lower node, in 0..=1.
     pub t: f64,
-    /// Unit normal of the offset surface at the crossing, pointing out of the offset solid; zero where the sign jumps
-    /// and no surface is near.
+    /// Unit normal of the offset surface at the crossing, pointing out of the offset solid; zero
+    /// where the sign jumps and no surface is near.
     pub normal: [f32; 3],
-    /// The triangle whose offset crosses there; 0 where nobody knows.
+    /// The triangle whose offset crosses there; 0 where it is unknown.
     pub triangle: u32,
 }
 
 impl Crossing {
-    /// Whether the sign of the distance jumps there, far from the surface. That happens where the input is open, or
-    /// intersects itself.
+    /// Whether the sign of the distance jumps at the crossing, far from the surface. The sign jumps
+    /// where the input is open, or intersects itself.
     #[inline]
     pub fn is_jump(&self) -> bool {
         self.normal == [0.0; 3]
@@ -181,14 +182,14 @@ impl Crossing {
 /// The crossings of all intersected edges, by [`EdgeId`].
 #[derive(Clone, Debug, Default)]
 pub struct Crossings {
-    /// Which edges are intersected, and their numbers.
+    /// The intersected edges and their numbers.
     pub numbers: EdgeNumbers,
-    /// One crossing per number.
+    /// The crossing of each number.
     pub samples: Vec<Crossing>,
 }
 
 impl Crossings {
-    /// The crossing of edge `edge`.
+    /// Returns the crossing of edge `edge`.
     pub fn sample(&self, edge: EdgeId) -> &Crossing {
         &self.samples[edge.0 as usize]
     }

@@ -1,6 +1,6 @@
-//! The hybrid solver for one edge (\[LW11\] section V.A): analytic where the closest points of both ends
-//! share a triangle, verified by a query, bisection otherwise, with a new analytic attempt after each
-//! subdivision.
+//! The hybrid solver for one edge (\[LW11\] section V.A): analytic where the closest points of both
+//! ends share a triangle, verified by a query, bisection otherwise, with a new analytic attempt
+//! after each subdivision.
 
 use super::shared_triangle::shared_triangle;
 use super::statistics::{COUNTED_SUBDIVISIONS, EdgeStatistics};
@@ -9,12 +9,12 @@ use crate::candidates::Candidates;
 use crate::distance::{Sample, SignedDistance};
 use glam::DVec3;
 
-/// A root is good when abs(phi) is below this many voxels. The promise is 1e-6; corners of the offset are
-/// found by intersecting planes through the roots, which multiplies their errors.
+/// A root is good when abs(phi) is below this many voxels. The promise is 1e-6; corners of the
+/// offset are found by intersecting planes through the roots, which multiplies their errors.
 pub(super) const TOLERANCE: f64 = 1e-7;
 
-/// Bisection ends when the interval is shorter than this part of the edge. By then a continuous phi is
-/// below the tolerance; what is left is a jump, or rounding far from the origin.
+/// Bisection ends when the interval is shorter than this part of the edge. By then a continuous phi
+/// is below the tolerance; what is left is a jump, or rounding far from the origin.
 pub(super) const SHORTEST: f64 = 1e-9;
 
 /// A grid edge, with what the band knows of its ends.
@@ -23,27 +23,27 @@ pub(super) struct GridEdge<'a> {
     /// World positions of the end that is inside the offset solid and of the one outside.
     pub(super) inside: DVec3,
     pub(super) outside: DVec3,
-    /// A triangle near each end, exact if `known`.
+    /// A triangle near each end, the closest one if it is known.
     pub(super) triangles: [NodeTriangle; 2],
     /// The triangles that can be closest to a point of the edge, where they are known.
     pub(super) candidates: Option<Candidates<'a>>,
-    /// How it runs along its axis.
+    /// Direction of the edge along its axis, from the inside to the outside.
     pub(super) direction: Direction,
-    /// A triangle near it.
+    /// A triangle near the edge.
     pub(super) hint: u32,
 }
 
-/// Which way an edge leaves the offset solid, going up its axis.
+/// The direction in which an edge leaves the offset solid, going up its axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Direction {
-    /// From the inside to the outside.
+    /// The edge goes out of the solid.
     Out,
-    /// From the outside to the inside.
+    /// The edge goes into the solid.
     In,
 }
 
 impl GridEdge<'_> {
-    /// The crossing at a root.
+    /// Returns the crossing at a root.
     pub(super) fn crossing(&self, root: Root) -> Crossing {
         let t = match self.direction {
             Direction::Out => root.t,
@@ -56,9 +56,9 @@ impl GridEdge<'_> {
 /// The closest triangle of a node.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum NodeTriangle {
-    /// From the band.
+    /// The closest triangle, as the band knows it.
     Known(u32),
-    /// The node is not in the band; some triangle to start from.
+    /// Some triangle to start from: the node is not in the band.
     Guess(u32),
 }
 
@@ -88,7 +88,7 @@ struct Bracket {
     high: End,
 }
 
-/// Where one triangle alone would have the root.
+/// The root that one triangle alone would have.
 #[derive(Clone, Copy)]
 struct Proposal {
     /// Position between the inside end (0) and the outside end (1).
@@ -103,13 +103,13 @@ pub(super) struct Solver<'a> {
 }
 
 impl Solver<'_> {
-    /// The intersection of `edge`.
+    /// Returns the intersection of `edge`.
     pub(super) fn solve(&self, edge: &GridEdge, statistics: &mut EdgeStatistics) -> Root {
         statistics.intersected += 1;
         self.halve(edge, statistics)
     }
 
-    /// The intersection of an edge that has been counted.
+    /// Returns the intersection of an edge that has been counted.
     pub(super) fn halve(&self, edge: &GridEdge, statistics: &mut EdgeStatistics) -> Root {
         match self.bracket(edge, statistics) {
             Ok(bracket) => {
@@ -120,7 +120,8 @@ impl Solver<'_> {
         }
     }
 
-    /// The ends of an edge with their distances; its root at once where there is nothing to solve.
+    /// Returns the ends of an edge with their distances; its root at once where there is nothing to
+    /// solve.
     fn bracket(&self, edge: &GridEdge, statistics: &mut EdgeStatistics) -> Result<Bracket, Root> {
         let [inside, outside] = edge.triangles;
         let low = End { t: 0.0, sample: self.node(edge, edge.inside, inside, statistics) };
@@ -130,14 +131,15 @@ impl Solver<'_> {
             statistics.by_subdivision[0] += 1;
             return Err(self.finish(edge, end));
         }
-        // The band decided the signs; where an open mesh makes the distance disagree, nothing is bracketed.
+        // The band decided the signs; where an open mesh makes the distance disagree, nothing is
+        // bracketed.
         if self.phi(&low) >= 0.0 || self.phi(&high) < 0.0 {
             return Err(self.jump(edge, 0.5, statistics));
         }
         Ok(Bracket { low, high })
     }
 
-    /// The analytic attempt between two ends.
+    /// Returns the root that the closed forms propose between two ends.
     fn propose(&self, edge: &GridEdge, Bracket { low, high }: &Bracket) -> Option<Proposal> {
         let triangle = shared_triangle(self.distance, &low.sample, &high.sample)?;
         let ends = [self.at(edge, low.t), self.at(edge, high.t)];
@@ -145,8 +147,8 @@ impl Solver<'_> {
         Some(Proposal { t: low.t + s * (high.t - low.t), triangle })
     }
 
-    /// Takes the point that was tried first, if there was one, for the root, or for a tighter interval, and goes on
-    /// from there by halving and trying.
+    /// Takes the point that was tried first, if there was one, for the root, or for a tighter
+    /// interval, and goes on from there by halving and trying.
     fn go_on(
         &self,
         edge: &GridEdge,
@@ -164,7 +166,8 @@ impl Solver<'_> {
                     }
                     return self.finish(edge, root);
                 }
-                // Not a root of the whole mesh, but on a known side: as good as a subdivision, and already paid.
+                // Not a root of the whole mesh, but on a known side: as good as a subdivision, and
+                // already paid.
                 self.replace(&mut low, &mut high, root);
             }
             if self.is_out_of_reach(edge, &low, &high) {
@@ -185,14 +188,16 @@ impl Solver<'_> {
         }
     }
 
-    /// Whether neither end can come to zero within the interval: the distance changes by no more than the way, so the sign jumps.
+    /// Whether neither end can come to zero within the interval. The distance changes by no more
+    /// than the way, so the sign jumps.
     fn is_out_of_reach(&self, edge: &GridEdge, low: &End, high: &End) -> bool {
         let rounding = 1e-12 * (edge.inside.abs().max_element() + self.r.abs());
         let way = (high.t - low.t) * self.voxel + rounding;
         self.phi(low) < -way && self.phi(high) > way
     }
 
-    /// The interval shrank to nothing: a root that rounding keeps from being recognised, or a jump.
+    /// Returns the root of an interval that shrank to nothing: a root that rounding keeps from
+    /// being recognised, or a jump.
     pub(super) fn collapsed(
         &self,
         edge: &GridEdge,

@@ -1,4 +1,5 @@
-//! The intersected edges of one leaf, block by block: edges that start in a block of 2^3 nodes share its list.
+//! The intersected edges of one leaf, block by block: edges that start in a block of 2^3 nodes
+//! share its list.
 
 use super::hybrid::{Direction, GridEdge, NodeTriangle, Root, Solver};
 use super::settings::RootMethod;
@@ -57,7 +58,8 @@ impl LeafSolver<'_> {
         statistics
     }
 
-    /// Intersects them eight at a time, those of a block together: they have its list in common, if it has one.
+    /// Intersects them eight at a time, those of a block together: they have its list in common, if
+    /// it has one.
     fn by_blocks(
         &self,
         leaf: &Leaf<'_>,
@@ -129,8 +131,8 @@ impl LeafSolver<'_> {
     }
 }
 
-/// The edges of `masks`, one for each axis, that start at nodes of a block: axis and node number in the leaf. Blocks are
-/// numbered x slowest. Returns how many there are.
+/// Returns the edges of `masks`, one for each axis, that start at nodes of a block: axis and node
+/// number in the leaf. Blocks are numbered x slowest. Returns how many there are.
 fn starting_in(block: usize, masks: &[&LeafMask; 3], edges: &mut [(Axis, usize); IN_BLOCK]) -> usize {
     let [x, y, z] = [block >> 4, block >> 2 & 3, block & 3].map(|n| 2 * n);
     let mut count = 0;

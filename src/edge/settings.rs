@@ -1,18 +1,20 @@
-//! Which surface the edges are intersected with, and by which method.
+//! Settings of the edge solver: the surface, the lattice and the method.
 
 use super::hybrid::TOLERANCE;
 use crate::lattice::{Lattice, Slab};
 
-/// How the intersection of an edge is found.
+/// The method that finds the intersection of an edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum RootMethod {
-    /// In closed form on the triangle that is closest where the last one had its root.
+    /// Fixed-point iteration: the closed form on one triangle, then on the triangle that is closest
+    /// to its root, until both are one.
     #[default]
     TriangleIteration,
-    /// The method of \[LW11\]: in closed form where both ends share a triangle, with halving between attempts.
+    /// The method of \[LW11\]: the closed form where both ends share a triangle, halving between
+    /// attempts.
     Hybrid,
-    /// By halving only, until abs(phi) is at most `tolerance` voxels: the measure that Table V of \[LW11\]
-    /// holds against the hybrid method.
+    /// Halving only, until abs(phi) is at most `tolerance` voxels: the measure that Table V of
+    /// \[LW11\] holds against the hybrid method.
     Bisection {
         /// In voxels, positive.
         tolerance: f64,
@@ -24,14 +26,14 @@ impl RootMethod {
     pub const PLAIN_BISECTION: RootMethod = RootMethod::Bisection { tolerance: TOLERANCE };
 }
 
-/// Which surface to intersect with, on which lattice, and how.
+/// The surface to intersect with, the lattice, and the method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeSettings {
     /// The lattice.
     pub lattice: Lattice,
     /// The offset distance r in model units.
     pub r: f64,
-    /// The way to the roots.
+    /// The method that finds the roots.
     pub method: RootMethod,
     /// The part of the lattice whose edges are counted; all are intersected.
     pub slab: Slab,

@@ -1,9 +1,10 @@
-//! The necessary condition for the analytic solution (\[LW11\] Remark 4): the closest points of both ends
-//! lie on one triangle.
+//! The necessary condition for the analytic solution (\[LW11\] Remark 4): the closest points of
+//! both ends lie on one triangle.
 //!
-//! A closest point on an edge or a vertex belongs to every triangle there, so the two triangles that the
-//! queries name may differ although a common one exists. The paper lists five such configurations, with
-//! their mirror images: face and edge, face and vertex, edge and edge, edge and vertex, vertex and vertex.
+//! A closest point on an edge or a vertex belongs to every triangle there, so the two triangles
+//! that the queries name may differ although a common one exists. The paper lists five such
+//! configurations, with their mirror images: face and edge, face and vertex, edge and edge, edge
+//! and vertex, vertex and vertex.
 
 use crate::distance::{Sample, SignedDistance};
 use crate::geom::triangle::Feature;
@@ -16,7 +17,7 @@ enum MeshFeature {
     Vertex(u32),
 }
 
-/// The triangle with the lowest number that holds the closest points of both samples.
+/// Returns the triangle with the lowest number that holds the closest points of both samples.
 pub(super) fn shared_triangle(distance: &SignedDistance, a: &Sample, b: &Sample) -> Option<u32> {
     if a.triangle == b.triangle {
         return Some(a.triangle);
@@ -47,7 +48,7 @@ fn mesh_feature(distance: &SignedDistance, sample: &Sample) -> MeshFeature {
     }
 }
 
-/// The lowest triangle at the edge that `sample` lies on which touches `other`.
+/// Returns the lowest triangle at the edge that `sample` lies on which touches `other`.
 fn at_edge(distance: &SignedDistance, sample: &Sample, other: MeshFeature) -> Option<u32> {
     let Feature::Edge(side) = sample.feature else { unreachable!("the sample lies on an edge") };
     let around = distance.topology().around_edge(sample.triangle, side).map(|(t, _)| t);
@@ -71,7 +72,7 @@ mod tests {
     use crate::mesh::{Topology, TriMesh};
     use glam::DVec3;
 
-    /// A fan of four triangles around vertex 0 and two more beyond, in the plane.
+    /// Returns a fan of four triangles around vertex 0 and two more beyond, in the plane.
     fn mesh() -> TriMesh {
         let v = |x: f64, y: f64| [x, y, 0.0];
         TriMesh {
@@ -123,7 +124,8 @@ mod tests {
 
     #[test]
     fn edge_and_edge() {
-        // Edge 1-2 named by triangle 4 and edge 0-2 named by triangle 1 are both edges of triangle 0.
+        // Edge 1-2 named by triangle 4 and edge 0-2 named by triangle 1 are both edges of
+        // triangle 0.
         assert_eq!(shared((4, edge(2)), (1, edge(0))), Some(0));
         // Edge 1-5 and edge 0-2: no triangle has both.
         assert_eq!(shared((4, edge(0)), (1, edge(0))), None);
@@ -140,7 +142,8 @@ mod tests {
 
     #[test]
     fn vertex_and_vertex() {
-        // Vertices 1 (named by 4) and 3 (named by 5): no common triangle; 1 (by 4) and 4 (by 2): triangle 3.
+        // Vertices 1 (named by 4) and 3 (named by 5): no common triangle; 1 (by 4) and 4 (by 2):
+        // triangle 3.
         assert_eq!(shared((4, vertex(0)), (5, vertex(2))), None);
         assert_eq!(shared((4, vertex(0)), (2, vertex(2))), Some(3));
     }

@@ -11,7 +11,7 @@ use crate::lattice::{Lattice, Slab};
 use crate::run::{Cancelled, Phase, RunSettings, SHARE};
 use rayon::prelude::*;
 
-/// The intersections of the edges numbered by `numbers` with the surface at distance `r`.
+/// Returns the intersections of the edges numbered by `numbers` with the surface at distance `r`.
 ///
 /// # Errors
 /// Cancellation.
@@ -28,7 +28,7 @@ pub fn solve(
     solve_by(distance, &settings, signs, numbers, near, run)
 }
 
-/// The same as [`solve`], by the method that the settings name.
+/// Returns the intersections that [`solve`] returns, found by the method that the settings name.
 ///
 /// # Errors
 /// Cancellation.

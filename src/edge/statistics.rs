@@ -1,4 +1,4 @@
-//! How the edge intersections were found: the counts of \[LW11\] Table V.
+//! Counts of edges by the way their intersection was found (\[LW11\] Table V).
 
 use serde::Serialize;
 use std::ops::AddAssign;
@@ -11,14 +11,15 @@ pub const COUNTED_SUBDIVISIONS: usize = 6;
 pub struct EdgeStatistics {
     /// Intersected grid edges.
     pub intersected: u64,
-    /// Entry n: edges solved analytically after n attempts that failed; by the hybrid method, after n subdivisions; by plain bisection, edges solved by n halvings.
+    /// Entry n: edges solved analytically after n attempts that failed; by the hybrid method, after
+    /// n subdivisions; by plain bisection, edges solved by n halvings.
     pub by_subdivision: [u64; COUNTED_SUBDIVISIONS + 1],
     /// Edges that bisection finished; by plain bisection, those that took more than six halvings.
     pub bisected: u64,
     /// Closest-point queries for all of them.
     pub queries: u64,
-    /// Edges along which the sign of the distance jumps without a root, which only happens when the input
-    /// is not closed: the surface is closed there.
+    /// Edges along which the sign of the distance jumps without a root, which only happens when the
+    /// input is not closed: the surface is closed there.
     pub sign_jumps: u64,
 }
 

@@ -1,9 +1,12 @@
-//! A faster way to the same roots: solve on one triangle, ask at the root which triangle is closest there, and go on with
-//! that one, until it is the one that was solved for.
+//! A faster way to the roots of the hybrid solver: fixed-point iteration on the closest triangle.
 //!
-//! The hybrid solver ([`hybrid`](super::hybrid)) evaluates both ends of an edge and halves it when their triangles do not
-//! do; here every question is asked where one triangle has the root, which is where the whole mesh has it most of the
-//! time. Where that leads nowhere, the hybrid solver takes over.
+//! The root is solved for on one triangle. A query at that root names the triangle that is closest
+//! there, and the iteration goes on with it, until it is the triangle that was solved for.
+//!
+//! The hybrid solver ([`hybrid`](super::hybrid)) evaluates both ends of an edge and halves it when
+//! their triangles do not do; here every question is asked where one triangle has the root, which
+//! is where the whole mesh has it most of the time. Where that leads nowhere, the hybrid solver
+//! takes over.
 
 use super::closed_form;
 use super::hybrid::{End, GridEdge, NodeTriangle, Root, SHORTEST, Solver, TOLERANCE};
@@ -11,10 +14,11 @@ use super::statistics::EdgeStatistics;
 use crate::candidates::Candidates;
 use glam::DVec3;
 
-/// Triangles that are followed before the hybrid solver takes over. More than five have not been seen on scanned models.
-const MOST: usize = 8;
+/// The most triangles in an iteration before the hybrid solver takes over. More than five have not
+/// been seen on scanned models.
+const MAX_ITERATIONS: usize = 8;
 
-/// Where one triangle alone would have the root.
+/// The root that one triangle alone would have.
 #[derive(Clone, Copy)]
 struct Proposal {
     /// Position between the inside end (0) and the outside end (1).
@@ -23,14 +27,15 @@ struct Proposal {
 }
 
 impl Solver<'_> {
-    /// The intersection of `edge`.
+    /// Returns the intersection of `edge`.
     pub(super) fn iterate(&self, edge: &GridEdge, statistics: &mut EdgeStatistics) -> Root {
         let tried = self.first(edge).map(|p| self.end(edge, p.t, p.triangle, statistics));
         self.iterate_from(edge, tried, statistics)
     }
 
-    /// The intersections of up to eight edges that are near each other, each as [`iterate`](Self::iterate) finds it. What they
-    /// try first is verified together, by the candidates that they have in common, if any.
+    /// The intersections of up to eight edges that are near each other, each as
+    /// [`iterate`](Self::iterate) finds it. What they try first is verified together, by the
+    /// candidates that they have in common, if any.
     pub(super) fn iterate8(
         &self,
         edges: &[GridEdge],
@@ -70,7 +75,7 @@ impl Solver<'_> {
         }
     }
 
-    /// Where the triangle of one end has the root.
+    /// Returns the root on the triangle of one end.
     fn first(&self, edge: &GridEdge) -> Option<Proposal> {
         edge.triangles.into_iter().find_map(|triangle| {
             let (NodeTriangle::Known(triangle) | NodeTriangle::Guess(triangle)) = triangle;
@@ -79,7 +84,7 @@ impl Solver<'_> {
         })
     }
 
-    /// Where `triangle` has the root between two positions.
+    /// Returns the position of the root on `triangle` between two positions.
     fn root_on(&self, edge: &GridEdge, triangle: u32, [low, high]: [f64; 2]) -> Option<f64> {
         let triangle = self.distance.ssvh().triangle(triangle);
         let s = closed_form::root(triangle, self.at(edge, low), self.at(edge, high), self.r)?;
@@ -89,7 +94,7 @@ impl Solver<'_> {
     fn iterate_from(&self, edge: &GridEdge, mut tried: Option<End>, statistics: &mut EdgeStatistics) -> Root {
         statistics.intersected += 1;
         let (mut low, mut high) = (0.0, 1.0);
-        for attempts in 0..MOST {
+        for attempts in 0..MAX_ITERATIONS {
             let Some(end) = tried else { break };
             if self.is_root(&end) {
                 match statistics.by_subdivision.get_mut(attempts) {

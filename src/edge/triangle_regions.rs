@@ -1,7 +1,9 @@
-//! The walk of a segment through the regions around a triangle (\[LW11\] section V.B, Definition 4).
+//! The walk of a segment through the regions around a triangle (\[LW11\] section V.B, Definition
+//! 4).
 //!
-//! The seven regions are separated by planes perpendicular to the triangle: one through each edge, and
-//! two at the ends of each edge. Each region is convex, so a segment crosses it in one interval.
+//! The seven regions are separated by planes perpendicular to the triangle: one through each edge,
+//! and two at the ends of each edge. Each region is convex, so a segment crosses it in one
+//! interval.
 
 use crate::geom::triangle::{Feature, Side, Triangle};
 use glam::DVec3;
@@ -16,10 +18,11 @@ pub(super) struct Interval {
     pub(super) feature: Feature,
 }
 
-/// Three planes through edges, six at their ends, and the two ends of the segment.
+/// The most cuts: at three planes through edges, at six planes at the ends of edges, and the two
+/// ends of the segment.
 const MAX_CUTS: usize = 11;
 
-/// The intervals of the segment p1 p2, in order.
+/// Returns the intervals of the segment p1 p2, in order.
 pub(super) fn walk(triangle: &Triangle, p1: DVec3, p2: DVec3) -> impl Iterator<Item = Interval> + '_ {
     let at = move |t: f64| p1 + (p2 - p1) * t;
     let (cuts, count) = cuts(triangle, p1, p2);
@@ -29,7 +32,8 @@ pub(super) fn walk(triangle: &Triangle, p1: DVec3, p2: DVec3) -> impl Iterator<I
     })
 }
 
-/// Sorted parameters at which the segment crosses a bounding plane, with 0 and 1; and how many.
+/// Returns the parameters at which the segment crosses a bounding plane, with 0 and 1, sorted, and
+/// their number.
 fn cuts(triangle: &Triangle, p1: DVec3, p2: DVec3) -> ([f64; MAX_CUTS], usize) {
     let mut cuts = [0.0; MAX_CUTS];
     cuts[1] = 1.0;

@@ -5,8 +5,8 @@ use glam::DVec3;
 
 /// The nodes `origin` .. `origin + side - 1` along each axis.
 ///
-/// The paper's boxes hold m^3 cells and share their border nodes; these hold m^3 nodes, so that each node
-/// is in one block, and reach half a cell less far.
+/// The paper's boxes hold m^3 cells and share their border nodes; these hold m^3 nodes, so that
+/// each node is in one block, and reach half a cell less far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Block {
     /// The lowest node.
@@ -16,25 +16,26 @@ pub struct Block {
 }
 
 impl Block {
-    /// World position of the centre of the block's nodes.
+    /// Returns the world position of the centre of the block's nodes.
     pub fn centre(&self, lattice: Lattice) -> DVec3 {
         let half = 0.5 * f64::from(self.side - 1);
         DVec3::from(self.origin.0.map(|i| lattice.voxel * (f64::from(i) + half)))
     }
 
-    /// Radius of the sphere through the block's corner nodes: the papers' delta.
+    /// Returns the radius of the sphere through the block's corner nodes: the papers' delta.
     pub fn radius(&self, lattice: Lattice) -> f64 {
         0.5 * 3f64.sqrt() * f64::from(self.side - 1) * lattice.voxel
     }
 
-    /// The origins of the leaves in the block, z fastest. Its side must be a multiple of a leaf's.
+    /// Returns the origins of the leaves in the block, z fastest. The block's side must be a
+    /// multiple of a leaf's.
     pub fn leaves(&self) -> impl Iterator<Item = Ijk> + use<> {
         let Block { origin, side } = *self;
         let steps = move || (0..side).step_by(LEAF_DIM as usize);
         steps().flat_map(move |x| steps().flat_map(move |y| steps().map(move |z| origin + Ijk::new(x, y, z))))
     }
 
-    /// The eight halves, z fastest.
+    /// Returns the eight octants, z fastest.
     pub fn children(&self) -> [Block; 8] {
         let side = self.side / 2;
         std::array::from_fn(|n| {

@@ -4,15 +4,16 @@ use super::{Block, FilterSettings, FilterStatistics, Switch, bounding_box, signe
 use crate::distance::SignedDistance;
 use crate::lattice::{Lattice, Slab};
 
-/// Rounding allowance of a test, in voxels: nodes are evaluated with an error far below this, and a block
-/// is only ever kept for it in vain.
+/// Rounding allowance of a test, in voxels. Nodes are evaluated with an error far below this; a
+/// larger value only keeps more blocks in vain.
 const ROUNDING: f64 = 1e-6;
 
-/// Centres of blocks up to this side are queried eight at a time. For larger blocks they are so far apart
-/// that each of the eight has triangles of its own, and one descent would look at all for all.
-const TOGETHER: i32 = 4;
+/// Width, in nodes, of the largest blocks whose centres are queried eight at a time. Centres of
+/// larger blocks are so far apart that each of the eight has triangles of its own, and one descent
+/// would look at all for all.
+const MAX_WIDTH_TOGETHER: i32 = 4;
 
-/// What a filter says of a block.
+/// The verdict of a filter on a block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
     /// All nodes are outside the offset solid and none is in the band.
@@ -39,16 +40,16 @@ pub struct Filter<'a> {
     pub r: f64,
     /// Half-width of the band in model units: nodes with abs(phi) up to this are kept.
     pub half_width: f64,
-    /// Which filters are on. [`bounding_box`](Self::bounding_box) heeds the first two; whether to call
-    /// [`octree`](Self::octree) is the caller's choice.
+    /// Switches of the filters. [`bounding_box`](Self::bounding_box) heeds the first two; the
+    /// caller decides whether to call [`octree`](Self::octree).
     pub settings: FilterSettings,
     /// The part of the lattice to work off. Blocks that another slab owns are not counted.
     pub slab: Slab,
 }
 
 impl Filter<'_> {
-    /// Applies the bounding box filter, then the signed distance filter to a bounding box, as far as they
-    /// are on.
+    /// Applies the bounding box filter, then the signed distance filter to a bounding box, as far
+    /// as they are on.
     pub fn bounding_box(&self, block: Block, statistics: &mut FilterStatistics) -> Verdict {
         let FilterSettings { bounding_box, signed_distance, .. } = self.settings;
         let centre = block.centre(self.lattice);
@@ -70,9 +71,9 @@ impl Filter<'_> {
         Verdict::Kept { triangle: hit.triangle, distance: signed }
     }
 
-    /// Subdivides a kept block down to blocks of side `smallest` and hands to `visit` each block that is
-    /// rejected on the way, and the smallest ones that are kept. Every node of `block` that is computed is in exactly
-    /// one of them. `triangle` is one near the block.
+    /// Subdivides a kept block down to blocks of side `smallest` and hands to `visit` each block
+    /// that is rejected on the way, and the smallest ones that are kept. Every node of `block` that
+    /// is computed is in exactly one of them. `triangle` is one near the block.
     pub fn octree(
         &self,
         block: Block,
@@ -83,7 +84,7 @@ impl Filter<'_> {
     ) {
         let children = block.children();
         let centres = children.map(|child| child.centre(self.lattice));
-        let hits = if children[0].side <= TOGETHER {
+        let hits = if children[0].side <= MAX_WIDTH_TOGETHER {
             self.distance.ssvh().closest8(&centres, triangle)
         } else {
             centres.map(|centre| self.distance.ssvh().closest_from(centre, triangle))
@@ -109,9 +110,9 @@ impl Filter<'_> {
         }
     }
 
-    /// How far a block's centre is from the surface that the octree filter looks for; without the signed
-    /// distance filter, from the nearer one of the two at distance abs(r), as the counts of the paper's
-    /// BB + OT have it.
+    /// Returns the distance of a block's centre from the surface that the octree filter looks for,
+    /// in model units. Without the signed distance filter it is the distance from the nearer one of
+    /// the two surfaces at abs(r), as the counts of the paper's BB + OT have it.
     #[inline]
     pub fn clearance(&self, signed: f64) -> f64 {
         match self.settings.signed_distance {
@@ -120,7 +121,8 @@ impl Filter<'_> {
         }
     }
 
-    /// l + delta of Remark 1: a block whose centre has abs(phi) above this holds no valid node.
+    /// Returns l + delta of Remark 1, in model units: a block whose centre has abs(phi) above that
+    /// holds no valid node.
     pub fn reach(&self, block: Block) -> f64 {
         self.half_width + block.radius(self.lattice) + ROUNDING * self.lattice.voxel
     }

@@ -1,18 +1,19 @@
-//! Which filters are on. All of them are, except to measure what each one saves (\[LW11\] Table IV).
+//! Switches of the filters. All filters are on, except to measure the work that each one saves
+//! (\[LW11\] Table IV).
 
 use crate::lattice::LEAF_DIM;
 
-/// Whether a filter is applied.
+/// The switch of a filter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Switch {
-    /// It is.
+    /// The filter is applied.
     #[default]
     On,
-    /// It is not: what it would reject is kept.
+    /// The filter is not applied: blocks that it would reject are kept.
     Off,
 }
 
-/// How large the bounding boxes are.
+/// The size of the bounding boxes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum BoxSide {
     /// About eight boxes along the grid's longest side.
@@ -25,8 +26,8 @@ pub enum BoxSide {
 /// The largest exponent of a box side: boxes larger than a grid of 4096 cells hold all of it.
 pub const LARGEST_BOX: u32 = 12;
 
-/// The filters of \[LW11\] section IV, each to be switched off. The band is the same whatever is on, for closed
-/// input; the number of distance computations is not.
+/// The filters of \[LW11\] section IV, each to be switched off. The band is the same whatever is
+/// on, for closed input; the number of distance computations is not.
 ///
 /// ```
 /// use exocarp::filter::{BoxSide, FilterSettings, Switch};
@@ -49,7 +50,8 @@ pub struct FilterSettings {
     pub signed_distance: Switch,
     /// The octree filter.
     pub octree: Switch,
-    /// Candidate lists within leaves, instead of a query for each block and node. They need the octree filter.
+    /// Candidate lists within leaves, instead of a query for each block and node. They need the
+    /// octree filter.
     pub candidates: Switch,
 }
 

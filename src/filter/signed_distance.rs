@@ -1,11 +1,13 @@
-//! The signed distance filter (\[LW11\] section IV.C, Remarks 3a and 3b): of the two surfaces at distance d,
-//! the one on the wrong side goes.
+//! The signed distance filter (\[LW11\] section IV.C, Remarks 3a and 3b): of the two surfaces at
+//! distance d, the one on the wrong side goes.
 //!
-//! The paper's intervals are closed at abs(phi) = l + delta; here they are open there, because a node at
-//! exactly abs(phi) = l is valid by Definition 1.
+//! The paper's intervals are closed at abs(phi) = l + delta; here they are open there, because a
+//! node at exactly abs(phi) = l is valid by Definition 1.
 
-/// Whether no node of a block that passed the bounding box filter is valid. `signed` is the signed
-/// distance at the centre, `r` the offset distance, `reach` = band half-width plus the block's radius.
+/// Whether no node of a block that passed the bounding box filter is valid.
+///
+/// `signed` is the signed distance at the centre, `r` the offset distance, `reach` = band
+/// half-width plus the block's radius, all in model units.
 pub(super) fn rejects(signed: f64, r: f64, reach: f64) -> bool {
     let d = r.abs();
     if r > 0.0 {

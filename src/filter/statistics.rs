@@ -1,4 +1,4 @@
-//! What the filters did: the counts of \[LW11\] Table IV.
+//! Counts of the filters' work (\[LW11\] Table IV).
 
 use serde::Serialize;
 use std::ops::AddAssign;
@@ -25,7 +25,8 @@ pub struct FilterStatistics {
 }
 
 impl FilterStatistics {
-    /// All distance computations: at centres of boxes, at centres of octree blocks, at nodes.
+    /// Returns all distance computations: at centres of boxes, at centres of octree blocks, at
+    /// nodes.
     pub fn distance_computations(&self) -> u64 {
         self.bounding_box_queries
             + self.octree_queries_valid

@@ -15,12 +15,12 @@ impl Aabb {
     /// The box that contains nothing.
     pub const EMPTY: Aabb = Aabb { lo: DVec3::INFINITY, hi: DVec3::NEG_INFINITY };
 
-    /// The smallest box around `points`.
+    /// Returns the smallest box around `points`.
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> Aabb {
         points.into_iter().fold(Aabb::EMPTY, |b, p| Aabb { lo: b.lo.min(p), hi: b.hi.max(p) })
     }
 
-    /// The box grown by `margin` on every side.
+    /// Returns the box grown by `margin` on every side.
     pub fn grown(self, margin: f64) -> Aabb {
         Aabb { lo: self.lo - margin, hi: self.hi + margin }
     }
@@ -30,7 +30,7 @@ impl Aabb {
         self.hi - self.lo
     }
 
-    /// The centre.
+    /// Returns the centre.
     pub fn centre(&self) -> DVec3 {
         // Halves first: the sum of two large coordinates could overflow.
         self.lo * 0.5 + self.hi * 0.5

@@ -9,8 +9,8 @@ fn coord(p: [f64; 3]) -> Coord3D<f64> {
     Coord3D { x: p[0], y: p[1], z: p[2] }
 }
 
-/// Six times the signed volume of the tetrahedron abcd: ((b - a) x (c - a)) . (d - a). Positive
-/// when d sees the triangle abc counter-clockwise, zero when the four points are coplanar.
+/// Returns six times the signed volume of the tetrahedron abcd: ((b - a) x (c - a)) . (d - a).
+/// Positive when d sees the triangle abc counter-clockwise, zero when the four points are coplanar.
 #[inline]
 pub fn orient3d(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> f64 {
     // `robust` counts the other side as positive.
@@ -42,17 +42,17 @@ pub fn are_apart([a, b, c]: [[f64; 3]; 3], above: [f64; 3], below: [f64; 3]) -> 
     side(above) > 0.0 && side(below) < 0.0
 }
 
-/// Twice the signed area of the triangle abc: positive when it is counter-clockwise, zero when the
-/// three points are collinear.
+/// Returns twice the signed area of the triangle abc: positive when it is counter-clockwise, zero
+/// when the three points are collinear.
 #[inline]
 pub fn orient2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     let coord = |p: [f64; 2]| Coord { x: p[0], y: p[1] };
     robust::orient2d(coord(a), coord(b), coord(c))
 }
 
-/// An axis along which the triangle abc can be projected without losing its area: the first of x, y
-/// and z. `None` if and only if the corners lie exactly on a line, which they do when they do so in
-/// all three projections.
+/// Returns an axis along which the triangle abc can be projected without losing its area: the first
+/// of x, y and z. `None` if and only if the corners lie exactly on a line, which they do when they
+/// do so in all three projections.
 #[inline]
 pub fn projection_axis(corners: [[f64; 3]; 3]) -> Option<usize> {
     (0..3).find(|&axis| {
@@ -61,7 +61,7 @@ pub fn projection_axis(corners: [[f64; 3]; 3]) -> Option<usize> {
     })
 }
 
-/// The point without its coordinate along `axis` (0, 1 or 2).
+/// Returns the point without its coordinate along `axis` (0, 1 or 2).
 #[inline]
 pub fn project(p: [f64; 3], axis: usize) -> [f64; 2] {
     [p[(axis + 1) % 3], p[(axis + 2) % 3]]

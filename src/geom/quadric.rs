@@ -57,18 +57,18 @@ impl Qef {
         self.right = along(self.right, distance, normal);
     }
 
-    /// The mean of the added points, at least one.
+    /// Returns the mean of the added points, at least one.
     pub fn mean(&self) -> [f64; 3] {
         self.points.map(|x| x / self.count)
     }
 
-    /// The least point of the function, nearest to the mean of the added points where it is not
-    /// unique. At least one plane must have been added.
+    /// Returns the least point of the function, nearest to the mean of the added points where it is
+    /// not unique. At least one plane must have been added.
     pub fn minimiser(&self) -> Minimiser {
         self.minimiser_near(self.mean())
     }
 
-    /// The least point of the function, nearest to `mean` where it is not unique.
+    /// Returns the least point of the function, nearest to `mean` where it is not unique.
     pub fn minimiser_near(&self, mean: [f64; 3]) -> Minimiser {
         let right = along(self.right, -1.0, self.matrix.times(mean));
         let eigen = self.matrix.eigen();
@@ -105,8 +105,8 @@ impl Minimiser {
         self.weights[1]
     }
 
-    /// The least point within the intersection of `region`, up to a rounding error; `None` when
-    /// none is found, as when the intersection is empty.
+    /// Returns the least point within the intersection of `region`, up to a rounding error; `None`
+    /// when none is found, as when the intersection is empty.
     ///
     /// The minimum of a convex quadratic function lies on the boundaries of at most three of the
     /// half-spaces, with multipliers that are not negative (Karush, Kuhn, Tucker): all such sets
@@ -147,8 +147,8 @@ impl Minimiser {
         None
     }
 
-    /// The least point on the boundaries of one to three half-spaces, if the function pushes
-    /// outwards through all of them there.
+    /// Returns the least point on the boundaries of one to three half-spaces, if the function
+    /// pushes outwards through all of them there.
     fn on_boundary(&self, set: &[HalfSpace]) -> Option<[f64; 3]> {
         let k = set.len();
         let mut pulled = [[0.0; 3]; 3];
@@ -174,7 +174,7 @@ impl Minimiser {
         Some(w)
     }
 
-    /// The inverse of the function's matrix times `v`.
+    /// Returns the inverse of the function's matrix times `v`.
     fn inverse_times(&self, v: [f64; 3]) -> [f64; 3] {
         let mut out = [0.0; 3];
         for (vector, weight) in self.vectors.iter().zip(self.weights) {
@@ -198,13 +198,13 @@ fn solve(rows: [[f64; 3]; 3], right: [f64; 3]) -> Option<[f64; 3]> {
     Some(std::array::from_fn(|i| (right[0] * bc[i] + right[1] * ca[i] + right[2] * ab[i]) / det))
 }
 
-/// The inner product.
+/// Returns the inner product.
 #[inline]
 pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The outer product.
+/// Returns the outer product.
 #[inline]
 pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
@@ -216,7 +216,7 @@ pub fn along(a: [f64; 3], scale: f64, b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| a[i] + scale * b[i])
 }
 
-/// The square of the distance of two points.
+/// Returns the square of the distance of two points.
 #[inline]
 pub fn distance2(a: [f64; 3], b: [f64; 3]) -> f64 {
     let d = along(a, -1.0, b);

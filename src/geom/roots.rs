@@ -1,7 +1,7 @@
 //! Roots of quadratics on an interval, guarded against cancellation.
 
-/// The real roots of a x^2 + b x + c in ascending order, without cancellation: the larger root in
-/// magnitude comes from the stable formula, the other from the product of both.
+/// Returns the real roots of a x^2 + b x + c in ascending order, without cancellation: the larger
+/// root in magnitude comes from the stable formula, the other from the product of both.
 pub fn quadratic(a: f64, b: f64, c: f64) -> impl Iterator<Item = f64> {
     let (first, second) = solve(a, b, c);
     [first, second].into_iter().flatten()

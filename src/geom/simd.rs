@@ -76,13 +76,13 @@ macro_rules! lanes {
             /// The number of lanes.
             pub const COUNT: usize = S::$count;
 
-            /// The same number in all lanes.
+            /// Returns the same number in all lanes.
             #[inline(always)]
             pub fn splat(simd: S, x: $float) -> Self {
                 $lanes(simd, simd.$splat(x))
             }
 
-            /// The vectors that eight numbers fill, one after the other.
+            /// Returns the vectors that eight numbers fill, one after the other.
             #[inline(always)]
             pub fn load(simd: S, from: &[$float; 8], vector: usize) -> Self {
                 $lanes(simd, S::$load(from).0[vector])
@@ -94,13 +94,13 @@ macro_rules! lanes {
                 S::$store(to).0[vector] = self.1;
             }
 
-            /// The smaller ones.
+            /// Returns the smaller ones.
             #[inline(always)]
             pub fn min(self, other: Self) -> Self {
                 $lanes(self.0, self.0.$min(self.1, other.1))
             }
 
-            /// The larger ones.
+            /// Returns the larger ones.
             #[inline(always)]
             pub fn max(self, other: Self) -> Self {
                 $lanes(self.0, self.0.$max(self.1, other.1))
@@ -253,7 +253,7 @@ macro_rules! points {
         }
 
         impl<S: Simd> $points<S> {
-            /// The same point in all lanes.
+            /// Returns the same point in all lanes.
             #[inline(always)]
             pub fn splat(simd: S, p: [$float; 3]) -> Self {
                 $points {
@@ -281,13 +281,13 @@ macro_rules! points {
                 self.z.store(&mut to[2], vector);
             }
 
-            /// The scalar products.
+            /// Returns the scalar products.
             #[inline(always)]
             pub fn dot(self, other: Self) -> $lanes<S> {
                 self.x * other.x + self.y * other.y + self.z * other.z
             }
 
-            /// The vector products.
+            /// Returns the vector products.
             #[inline(always)]
             pub fn cross(self, other: Self) -> Self {
                 $points {
@@ -297,7 +297,7 @@ macro_rules! points {
                 }
             }
 
-            /// The vectors times numbers.
+            /// Returns the vectors times numbers.
             #[inline(always)]
             pub fn times(self, factors: $lanes<S>) -> Self {
                 $points { x: self.x * factors, y: self.y * factors, z: self.z * factors }
@@ -344,13 +344,13 @@ impl<S: Simd> F32s<S> {
         F32s(self.0, self.0.abs_f32s(self.1))
     }
 
-    /// The least of the lanes.
+    /// Returns the least of the lanes.
     #[inline(always)]
     pub fn least(self) -> f32 {
         self.0.reduce_min_f32s(self.1)
     }
 
-    /// The numbers times others, and more. May be fused: see the module.
+    /// Returns the numbers times others, and more. May be fused: see the module.
     #[inline(always)]
     pub fn times_plus(self, factors: Self, more: Self) -> Self {
         F32s(self.0, self.0.mul_add_e_f32s(self.1, factors.1, more.1))
@@ -358,13 +358,13 @@ impl<S: Simd> F32s<S> {
 }
 
 impl<S: Simd> Vec3F32s<S> {
-    /// The scalar products, and more. May be fused: see the module.
+    /// Returns the scalar products, and more. May be fused: see the module.
     #[inline(always)]
     pub fn dot_plus(self, other: Self, more: F32s<S>) -> F32s<S> {
         self.x.times_plus(other.x, self.y.times_plus(other.y, self.z.times_plus(other.z, more)))
     }
 
-    /// The vectors times numbers, and more. May be fused: see the module.
+    /// Returns the vectors times numbers, and more. May be fused: see the module.
     #[inline(always)]
     pub fn times_plus(self, factors: F32s<S>, more: Self) -> Self {
         Vec3F32s {

@@ -1,8 +1,8 @@
 //! Swept sphere volumes: all points within a radius of a point, a segment or a rectangle (Larsen et
 //! al. 2000).
 //!
-//! One formula serves all three kinds: a rectangle with one half-length zero is a segment, with both
-//! zero a point.
+//! One formula serves all three kinds: a rectangle with one half-length zero is a segment, with
+//! both zero a point.
 
 use super::sym3::Sym3;
 use glam::DVec3;
@@ -38,7 +38,7 @@ pub struct Swept {
 pub type Sphere = (DVec3, f64);
 
 impl Swept {
-    /// The kind, from the half-lengths.
+    /// Returns the kind, from the half-lengths.
     pub fn kind(&self) -> SweptKind {
         match self.half {
             [0.0, 0.0] => SweptKind::Point,
@@ -62,13 +62,14 @@ impl Swept {
         self.corners().into_iter().map(|c| (p - c).length()).fold(0.0, f64::max) + self.radius
     }
 
-    /// The corners of the rectangle.
+    /// Returns the corners of the rectangle.
     pub fn corners(&self) -> [DVec3; 4] {
         let (x, y) = (self.u * self.half[0], self.v * self.half[1]);
         [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|(s, t)| self.centre + x * s + y * t)
     }
 
-    /// The volume: slab, half-cylinders along the four sides, and one sphere from the corners.
+    /// Returns the volume: slab, half-cylinders along the four sides, and one sphere from the
+    /// corners.
     pub fn volume(&self) -> f64 {
         use std::f64::consts::PI;
         let ([a, b], r) = (self.half, self.radius);
@@ -80,11 +81,11 @@ impl Swept {
         Swept::shape_around(spheres).with_radius_around(spheres)
     }
 
-    /// Returns centre, axes and half-lengths of [`around`](Self::around), but for its last digits the
-    /// radius, too. Who rounds the volume has to widen it again, and need not do that twice.
+    /// Returns centre, axes and half-lengths of [`around`](Self::around), but for its last digits
+    /// the radius, too. Who rounds the volume has to widen it again, and need not do that twice.
     ///
-    /// Of point-, line- and rectangle-swept it is the one with the smallest volume, the simpler one on
-    /// a tie, with axes by principal components.
+    /// Of point-, line- and rectangle-swept it is the one with the smallest volume, the simpler one
+    /// on a tie, with axes by principal components.
     pub fn shape_around(spheres: &[Sphere]) -> Swept {
         let (u, v) = principal_axes(spheres);
         let frame = Frame::new(spheres, u, v);
@@ -95,7 +96,8 @@ impl Swept {
     }
 
     /// Returns the rectangle-swept volume of a triangle, along its longest edge, with the radius 0:
-    /// [`with_radius_around`](Self::with_radius_around) its corners gives the one that rounding needs.
+    /// [`with_radius_around`](Self::with_radius_around) its corners gives the one that rounding
+    /// needs.
     pub fn shape_around_triangle(corners: [DVec3; 3]) -> Swept {
         let longest = (0..3)
             .max_by(|&i, &j| {
@@ -132,8 +134,9 @@ impl Swept {
     }
 }
 
-/// Returns how far the farthest point of `spheres` is from a core, of which `squared` gives the squared
-/// distance of a centre. Points share one square root: it never falls where its argument grows.
+/// Returns how far the farthest point of `spheres` is from a core, of which `squared` gives the
+/// squared distance of a centre. Points share one square root: it never falls where its argument
+/// grows.
 #[inline]
 fn farthest(spheres: &[Sphere], squared: impl Fn(DVec3) -> f64) -> f64 {
     let (mut points, mut others) = (0.0f64, 0.0f64);
@@ -147,9 +150,9 @@ fn farthest(spheres: &[Sphere], squared: impl Fn(DVec3) -> f64) -> f64 {
     others.max(points.sqrt())
 }
 
-/// The direction of `v`, what is left of a vector of about `size` after its part along the unit vector `u`
-/// was taken off. When next to nothing is left, that is rounding and may point anywhere, along `u` too: then
-/// some other perpendicular direction.
+/// Returns the direction of `v`, what is left of a vector of about `size` after its part along the
+/// unit vector `u` was taken off. When next to nothing is left, that is rounding and may point
+/// anywhere, along `u` too: then some other perpendicular direction.
 fn perpendicular(v: DVec3, u: DVec3, size: f64) -> DVec3 {
     if v.length() <= 1e-9 * size {
         return u.any_orthonormal_vector();
@@ -207,7 +210,8 @@ impl Frame {
         Swept { centre, u, v, half: [half_u, half_v], radius }
     }
 
-    /// Returns the middle and half the length of the core of one kind, along its first and second axis.
+    /// Returns the middle and half the length of the core of one kind, along its first and second
+    /// axis.
     fn core(&self, kind: SweptKind) -> [(f64, f64); 2] {
         let Frame { ref spheres, mid, .. } = *self;
         if kind == SweptKind::Point {

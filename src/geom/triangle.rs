@@ -16,12 +16,12 @@ impl Side {
     /// The three sides.
     pub const ALL: [Side; 3] = [Side(0), Side(1), Side(2)];
 
-    /// The number: 0, 1 or 2.
+    /// Returns the number: 0, 1 or 2.
     pub const fn index(self) -> usize {
         self.0 as usize
     }
 
-    /// The side after this one, cyclically.
+    /// Returns the side after this one, cyclically.
     pub const fn next(self) -> Side {
         Side((self.0 + 1) % 3)
     }
@@ -141,9 +141,9 @@ pub struct ClosestPoint {
 }
 
 impl Triangle {
-    /// The triangle with the given corners, whose vertices have the given numbers in their mesh.
-    /// The numbers only fix the direction in which an edge is evaluated: both triangles of an edge
-    /// then compute the same distance to it, to the last bit.
+    /// Returns the triangle with the given corners, whose vertices have the given numbers in their
+    /// mesh. The numbers only fix the direction in which an edge is evaluated: both triangles of an
+    /// edge then compute the same distance to it, to the last bit.
     pub fn new(corners: [DVec3; 3], vertices: [u32; 3]) -> Self {
         let [a, b, c] = corners;
         let cross = (b - a).cross(c - a);
@@ -173,7 +173,7 @@ impl Triangle {
         best
     }
 
-    /// The triangle with what does not depend on the point computed ahead.
+    /// Returns the triangle with what does not depend on the point computed ahead.
     #[inline(always)]
     pub fn splat<S: Simd>(&self, simd: S) -> SplatTriangle<S> {
         let a = Vec3F64s::splat(simd, self.corners[0].to_array());
@@ -191,14 +191,14 @@ impl Triangle {
         }
     }
 
-    /// The ends of an edge, the one with the lower vertex number first.
+    /// Returns the ends of an edge, the one with the lower vertex number first.
     #[inline(always)]
     fn ends(&self, side: Side) -> (Side, Side) {
         if self.flipped >> side.0 & 1 == 1 { (side.next(), side) } else { (side, side.next()) }
     }
 
-    /// The closest point to `p`. Of two edges at the same distance the one with the lower number
-    /// counts.
+    /// Returns the closest point to `p`. Of two edges at the same distance the one with the lower
+    /// number counts.
     pub fn closest(&self, p: DVec3) -> ClosestPoint {
         let outside = self.outside(p);
         if outside.iter().all(|&x| x < 0.0) {
@@ -222,8 +222,8 @@ impl Triangle {
         best
     }
 
-    /// The feature that the closest point to `p` lies on, as [`closest`](Self::closest) finds it:
-    /// faster, since where `p` is beyond one edge no distance is needed.
+    /// Returns the feature that the closest point to `p` lies on, as [`closest`](Self::closest)
+    /// finds it: faster, since where `p` is beyond one edge no distance is needed.
     #[inline]
     pub fn feature(&self, p: DVec3) -> Feature {
         let beyond = self.outside(p).map(|x| x >= 0.0);

@@ -9,7 +9,7 @@ pub const Z_FIRST: u64 = 0x0101_0101_0101_0101;
 /// The bits with z = 7 in each row of a word of a [`LeafMask`].
 pub const Z_LAST: u64 = Z_FIRST << 7;
 
-/// The numbers of the set bits of a leaf mask, ascending.
+/// Returns the numbers of the set bits of a leaf mask, ascending.
 #[inline]
 pub fn bits(mask: &LeafMask) -> Bits<'_> {
     Bits { mask, word: 0, rest: mask[0] }

@@ -32,29 +32,29 @@ pub const LEAF_SIZE: usize = 512;
 pub struct Ijk(pub [i32; 3]);
 
 impl Ijk {
-    /// The index (i, j, k).
+    /// Returns the index (i, j, k).
     pub const fn new(i: i32, j: i32, k: i32) -> Self {
         Ijk([i, j, k])
     }
 
-    /// The origin of the leaf that contains this node.
+    /// Returns the origin of the leaf that contains this node.
     pub fn leaf_origin(self) -> Ijk {
         Ijk(self.0.map(|x| x & !(LEAF_DIM - 1)))
     }
 
-    /// The number of this node within its leaf, in 0..512.
+    /// Returns the number of this node within its leaf, in 0..512.
     pub fn number_in_leaf(self) -> usize {
         let [x, y, z] = self.0.map(|x| (x & (LEAF_DIM - 1)) as usize);
         64 * x + 8 * y + z
     }
 
-    /// The node with `number` (0..512) in the leaf at `origin`.
+    /// Returns the node with `number` (0..512) in the leaf at `origin`.
     pub fn in_leaf(origin: Ijk, number: usize) -> Ijk {
         let n = number as i32;
         origin + Ijk::new(n >> 6, (n >> 3) & 7, n & 7)
     }
 
-    /// The next node along `axis`.
+    /// Returns the next node along `axis`.
     pub fn next(mut self, axis: Axis) -> Ijk {
         self.0[axis as usize] += 1;
         self
@@ -91,7 +91,8 @@ impl Axis {
     /// The three axes in order.
     pub const ALL: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 
-    /// The other two axes, in the cyclic order that makes (self, first, second) right-handed.
+    /// Returns the other two axes, in the cyclic order that makes (self, first, second)
+    /// right-handed.
     pub const fn others(self) -> (Axis, Axis) {
         match self {
             Axis::X => (Axis::Y, Axis::Z),
@@ -108,28 +109,28 @@ pub struct Lattice {
     pub voxel: f64,
 }
 
-/// How much larger than half width times voxel size a background is at least: by two units in the
-/// last place of an f32. Then neither the voxel size rounded to f32 nor a division or product
+/// Factor by which a background is larger than half-width times voxel size at least: two units in
+/// the last place of an f32. Then neither the voxel size rounded to f32 nor a division or product
 /// rounded to it makes fewer voxels of the background: these are off by a quarter of that each.
 /// Much more, and nodes farther out would be in the band.
-const HAIR: f64 = 1.0 + 2.0 * f32::EPSILON as f64;
+const BACKGROUND_MARGIN: f64 = 1.0 + 2.0 * f32::EPSILON as f64;
 
 impl Lattice {
-    /// World coordinate of the node plane with index `i` along any axis.
+    /// Returns the world coordinate of the node plane with index `i` along any axis.
     pub fn plane(&self, i: i32) -> f64 {
         self.voxel * f64::from(i)
     }
 
-    /// The value of nodes outside a band of `half_width` voxels, as stored: a hair above their
-    /// product, in model units. Other programs count the voxels back, in 32 or 64 bits, and take
-    /// what is less than three for no level set.
+    /// Returns the value of nodes outside a band of `half_width` voxels, as stored: slightly above
+    /// their product, in model units. Other programs count the voxels back, in 32 or 64 bits, and
+    /// take what is less than three for no level set.
     pub fn background(&self, half_width: f64) -> f32 {
-        let least = half_width * self.voxel * HAIR;
+        let least = half_width * self.voxel * BACKGROUND_MARGIN;
         let background = least as f32;
         if f64::from(background) < least { background.next_up() } else { background }
     }
 
-    /// World position of node `ijk`.
+    /// Returns the world position of node `ijk`.
     pub fn world_from_index(&self, ijk: Ijk) -> [f64; 3] {
         ijk.0.map(|i| self.plane(i))
     }

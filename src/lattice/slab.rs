@@ -34,9 +34,9 @@ impl Slab {
     /// Everything.
     pub const WHOLE: Slab = Slab { from: i32::MIN, to: i32::MAX, halo: 0 };
 
-    /// The leaves from node `from` along x up to but not including node `to`, and `halo` more nodes
-    /// on either side that are computed too. All are multiples of 8; `i32::MIN` and `i32::MAX`
-    /// stand for no end.
+    /// Returns the leaves from node `from` along x up to but not including node `to`, and `halo`
+    /// more nodes on either side that are computed too. All are multiples of 8; `i32::MIN` and
+    /// `i32::MAX` stand for no end.
     ///
     /// # Panics
     /// When a plane or the halo is not a multiple of 8.
@@ -46,27 +46,27 @@ impl Slab {
         Slab { from, to, halo }
     }
 
-    /// Whether the leaf or block at `origin` counts as the slab's own: each belongs to one of
-    /// several slabs that touch.
+    /// Whether the slab owns the leaf or block at `origin`. Of several slabs that touch, one owns
+    /// each leaf.
     pub fn owns(&self, origin: Ijk) -> bool {
         (self.from..self.to).contains(&origin.0[0])
     }
 
-    /// Whether any of the nodes of the block at `origin` with the given side are the slab's own.
+    /// Whether the slab owns any node of the block at `origin` with the given side.
     pub fn meets(&self, origin: Ijk, side: i32) -> bool {
         let x = origin.0[0];
         x < self.to && x.saturating_add(side) > self.from
     }
 
-    /// Leaves between the leaf at `origin`, which is computed, and the nearer one of the planes
-    /// where that ends. Up to `most`: no further is looked.
+    /// Returns the number of leaves between the leaf at `origin`, which is computed, and the nearer
+    /// one of the planes where the computed part ends. Counts up to `most`.
     pub fn depth(&self, origin: Ijk, most: i32) -> i32 {
         let at = |leaves: i32| origin + Ijk::new(LEAF_DIM * leaves, 0, 0);
-        let is_open = |n: &i32| self.computes(at(n + 1), LEAF_DIM) && self.computes(at(-n - 1), LEAF_DIM);
-        (0..most).find(|n| !is_open(n)).unwrap_or(most)
+        let is_within = |n: &i32| self.computes(at(n + 1), LEAF_DIM) && self.computes(at(-n - 1), LEAF_DIM);
+        (0..most).find(|n| !is_within(n)).unwrap_or(most)
     }
 
-    /// Whether any of the nodes of the block at `origin` with the given side are computed.
+    /// Whether any node of the block at `origin` with the given side is computed.
     pub fn computes(&self, origin: Ijk, side: i32) -> bool {
         let x = origin.0[0];
         let first = self.from.saturating_sub(self.halo);

@@ -17,8 +17,8 @@ pub struct MeshChunk<'a> {
 }
 
 impl<'a> MeshChunk<'a> {
-    /// The vertices and triangles of `mesh` with these numbers. The first of the vertices has the
-    /// number `first_vertex` in the whole, whose other vertices are around them in `mesh`.
+    /// Returns the vertices and triangles of `mesh` with these numbers. The first of the vertices
+    /// has the number `first_vertex` in the whole, whose other vertices are around them in `mesh`.
     pub(crate) fn new(
         mesh: &'a TriMesh,
         own_vertices: Range<usize>,

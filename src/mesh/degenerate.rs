@@ -22,8 +22,8 @@ use rayon::prelude::*;
 
 use crate::geom::predicates::projection_axis;
 
-/// The numbers of the triangles without area: two corners are the same vertex, or all lie exactly
-/// on a line.
+/// Returns the numbers of the triangles without area: two corners are the same vertex, or all lie
+/// exactly on a line.
 pub(super) fn degenerate(triangles: &[[u32; 3]], vertices: &[[f64; 3]]) -> Vec<u32> {
     (0..triangles.len() as u32)
         .into_par_iter()
@@ -71,9 +71,9 @@ fn has_equal([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }
 
-/// The longest edge of a triangle whose corners lie on a line, as the number of the corner where it
-/// begins, and its length along the axis where the line is longest. `None` where no corner is
-/// strictly between the others.
+/// Returns the longest edge of a triangle whose corners lie on a line, as the number of the corner
+/// where it begins, and its length along the axis where the line is longest. `None` where no corner
+/// is strictly between the others.
 fn longest_edge(t: [u32; 3], vertices: &[[f64; 3]]) -> Option<(usize, f64)> {
     if has_equal(t) {
         return None;
@@ -134,7 +134,7 @@ impl Ord for Length {
 }
 
 impl<'a> Pieces<'a> {
-    /// The triangles with the numbers `degenerate` and those at their edges.
+    /// Returns the triangles with the numbers `degenerate` and those at their edges.
     fn new(degenerate: &[u32], triangles: &[[u32; 3]], vertices: &'a [[f64; 3]]) -> Self {
         let mut is_near = vec![false; vertices.len()];
         let mut edges = HashSet::new();
@@ -199,7 +199,7 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// The first piece that runs along an edge in its direction.
+    /// Returns the first piece that runs along an edge in its direction.
     fn along(&self, edge: [u32; 2]) -> Option<u32> {
         let pieces = self.by_edge.get(&edge)?;
         pieces.iter().copied().find(|&number| self.all[number as usize].is_there)
@@ -224,7 +224,7 @@ impl<'a> Pieces<'a> {
     }
 }
 
-/// The edges of a triangle, as it runs along them.
+/// Returns the edges of a triangle, as it runs along them.
 fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
     [[a, b], [b, c], [c, a]]
 }

@@ -62,8 +62,9 @@ pub(super) fn first_equal<T: Copy + Sync, K: Copy + Default + Eq + Send + Sync>(
     first
 }
 
-/// A hash of three words: the halves of each product with an odd constant, folded. Positions of
-/// models are f64 with many zero bits at the end, which the fold spreads over the whole word.
+/// Returns a hash of three words: the halves of each product with an odd constant, folded.
+/// Positions of models are f64 with many zero bits at the end, which the fold spreads over the
+/// whole word.
 pub(super) fn hash(words: [u64; 3]) -> u64 {
     /// 2^64 divided by the golden ratio: odd, and no pattern in its bits.
     const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;

@@ -45,7 +45,7 @@ impl Defects {
 }
 
 impl Topology {
-    /// The topology of `mesh`.
+    /// Returns the topology of `mesh`.
     pub fn new(mesh: &TriMesh) -> Self {
         let ((vertex_start, vertex_corners), half_edges) =
             rayon::join(|| corners_by_vertex(mesh), || half_edges_by_lower_vertex(mesh));
@@ -66,8 +66,8 @@ impl Topology {
         &self.defects
     }
 
-    /// The triangles at edge `side` of `triangle`, each with the side it has there, starting with
-    /// the triangle itself.
+    /// Returns the triangles at edge `side` of `triangle`, each with the side it has there,
+    /// starting with the triangle itself.
     pub fn around_edge(&self, triangle: u32, side: Side) -> impl Iterator<Item = (u32, Side)> + '_ {
         let start = 3 * triangle + side.index() as u32;
         std::iter::successors(Some(start), move |&h| {
@@ -76,7 +76,7 @@ impl Topology {
         .map(|h| (h / 3, Side::ALL[(h % 3) as usize]))
     }
 
-    /// The triangles at `vertex`, ascending.
+    /// Returns the triangles at `vertex`, ascending.
     pub fn around_vertex(&self, vertex: u32) -> &[u32] {
         let v = vertex as usize;
         &self.vertex_triangles[self.vertex_start[v] as usize..self.vertex_start[v + 1] as usize]
@@ -93,7 +93,7 @@ impl Topology {
         components
     }
 
-    /// The number of undirected edges.
+    /// Returns the number of undirected edges.
     pub fn edges(&self) -> usize {
         let first_of_its_ring = |h: u32| {
             let mut next = self.next_around_edge[h as usize];
@@ -148,8 +148,8 @@ fn corners_by_vertex(mesh: &TriMesh) -> (Vec<u32>, Vec<u32>) {
     (start, corners)
 }
 
-/// All half-edges, sorted by their ends, then by number: a counting sort by the lower end, then a
-/// sort of the few that share it.
+/// Returns all half-edges, sorted by their ends, then by number: a counting sort by the lower end,
+/// then a sort of the few that share it.
 fn half_edges_by_lower_vertex(mesh: &TriMesh) -> Vec<HalfEdge> {
     let half_edge = |number: usize| {
         let t = mesh.triangles[number / 3];
@@ -181,7 +181,7 @@ fn half_edges_by_lower_vertex(mesh: &TriMesh) -> Vec<HalfEdge> {
 mod tests {
     use super::*;
 
-    /// A tetrahedron on four vertices.
+    /// Returns a tetrahedron on four vertices.
     fn tetrahedron() -> TriMesh {
         TriMesh {
             vertices: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],

@@ -11,7 +11,7 @@ pub struct TriMesh {
 }
 
 impl TriMesh {
-    /// The positions of the corners of triangle `t`.
+    /// Returns the positions of the corners of triangle `t`.
     ///
     /// # Panics
     /// When `t` or one of its vertex numbers is out of range.
@@ -36,7 +36,7 @@ impl TriMesh {
         self.triangles.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
     }
 
-    /// The smallest and largest coordinates of all vertices; `None` without vertices.
+    /// Returns the smallest and largest coordinates of all vertices; `None` without vertices.
     pub fn bounding_box(&self) -> Option<[[f64; 3]; 2]> {
         let first = *self.vertices.first()?;
         Some(self.vertices.iter().fold([first, first], |[lo, hi], v| {

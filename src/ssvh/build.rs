@@ -13,7 +13,7 @@ use rayon::prelude::*;
 pub struct Ssvh {
     pub(super) nodes: Vec<Node>,
     pub(super) triangles: Vec<Triangle>,
-    /// Mesh triangle number by slot in the hierarchy's order.
+    /// Number in the mesh of the triangle in each slot. Slots are the hierarchy's own order.
     pub(super) ids: Vec<u32>,
     /// Position in the hierarchy's order by mesh triangle number.
     slots: Vec<u32>,
@@ -22,28 +22,31 @@ pub struct Ssvh {
     pub(super) extent: f64,
 }
 
-/// Subtrees up to this many triangles get volumes fitted to their corners; larger ones to the volumes of
-/// their children. Larger: slower to build. Smaller: looser volumes where queries spend their time.
+/// Subtrees up to this many triangles get volumes fitted to their corners; larger ones to the
+/// volumes of their children. Larger: slower to build. Smaller: looser volumes where queries spend
+/// their time.
 const FIT_EXACTLY: usize = WIDTH * WIDTH;
 
 /// Subtrees from this many triangles on are built in parallel; a task of fewer takes less time than
 /// handing it over.
 const PARALLEL: usize = 2048;
 
-/// A triangle while it is sorted. In 16 bytes, since sorting is moving them: where exactly a subtree ends matters to nobody.
+/// A triangle while it is sorted. In 16 bytes, since sorting is moving them: where exactly a
+/// subtree ends matters to nobody.
 #[derive(Clone, Copy)]
 struct Primitive {
-    /// From the centre of the mesh, in half its extent.
+    /// Centroid from the centre of the mesh, in units of half its extent.
     centroid: Vec3,
     id: u32,
 }
 
 impl Ssvh {
-    /// Builds the hierarchy over all triangles of `mesh`. Runs on the current rayon pool; the result does
-    /// not depend on the number of threads.
+    /// Builds the hierarchy over all triangles of `mesh`. Runs on the current rayon pool; the
+    /// result does not depend on the number of threads.
     ///
     /// # Panics
-    /// When the mesh has no triangle, 2^32 - 1 or more of them, or refers to a vertex that does not exist.
+    /// When the mesh has no triangle, 2^32 - 1 or more of them, or refers to a vertex that does not
+    /// exist.
     pub fn new(mesh: &TriMesh) -> Self {
         let count = mesh.triangles.len();
         assert!(count > 0 && count < u32::MAX as usize, "the hierarchy needs 1 to 2^32 - 2 triangles");
@@ -73,17 +76,17 @@ impl Ssvh {
         Ssvh { nodes, triangles, ids, slots, centre, extent }
     }
 
-    /// The triangle with mesh number `id`.
+    /// Returns the triangle with mesh number `id`.
     pub fn triangle(&self, id: u32) -> &Triangle {
         &self.triangles[self.slots[id as usize] as usize]
     }
 
-    /// The slot of mesh triangle `id` in the hierarchy's order.
+    /// Returns the slot of mesh triangle `id` in the hierarchy's order.
     pub(super) fn slot(&self, id: u32) -> usize {
         self.slots[id as usize] as usize
     }
 
-    /// The number of triangles.
+    /// Returns the number of triangles.
     pub fn len(&self) -> usize {
         self.ids.len()
     }
@@ -98,8 +101,8 @@ fn triangle(mesh: &TriMesh, id: u32) -> Triangle {
     Triangle::new(mesh.corners(id as usize).map(DVec3::from), mesh.triangles[id as usize])
 }
 
-/// Triangles per child: the largest power of eight below `count`, so that all subtrees but the last are
-/// full. Only for `count` above [`WIDTH`].
+/// Triangles per child: the largest power of eight below `count`, so that all subtrees but the last
+/// are full. Only for `count` above [`WIDTH`].
 fn child_capacity(count: usize) -> usize {
     let mut capacity = 1;
     while capacity * WIDTH < count {
@@ -124,8 +127,8 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    /// Builds the subtree over `primitives` into `nodes`, whose first has the number `number`; the first
-    /// primitive has the slot `slot`. Returns what encloses the subtree: spheres.
+    /// Builds the subtree over `primitives` into `nodes`, whose first has the number `number`; the
+    /// first primitive has the slot `slot`. Returns what encloses the subtree: spheres.
     fn build(
         &self,
         primitives: &mut [Primitive],
@@ -176,7 +179,7 @@ impl Builder<'_> {
         self.mesh.corners(id as usize).map(|c| DVec3::from(c) - self.centre)
     }
 
-    /// Spheres whose hull encloses all triangles of the subtree with the root `node`.
+    /// Returns spheres whose hull encloses all triangles of the subtree with the root `node`.
     fn enclosing(&self, primitives: &[Primitive], node: &Node) -> Vec<Sphere> {
         if primitives.len() <= FIT_EXACTLY {
             return primitives.iter().flat_map(|p| self.corners(p.id)).map(|c| (c, 0.0)).collect();

@@ -8,32 +8,33 @@ use glam::DVec3;
 use pulp::{Simd, WithSimd};
 
 impl Ssvh {
-    /// Appends to `found` the slots, in the hierarchy's order, of all triangles whose distance from one of the
-    /// points is at most that point's limit, and of some that are a little farther. Gives up when `found` holds more than
-    /// `most`.
+    /// Appends to `found` the slots, in the hierarchy's order, of all triangles whose distance from
+    /// one of the points is at most that point's limit, and of some that are a little farther.
+    /// Gives up when `found` holds more than `most`.
     pub fn collect(&self, points: &[DVec3; 8], limits: &[f64; 8], most: usize, found: &mut Vec<u32>) {
         dispatch(Collect { tree: self, points, limits, most, found });
     }
 
-    /// The triangle at a slot of the hierarchy's order.
+    /// Returns the triangle at a slot of the hierarchy's order.
     #[inline]
     pub fn triangle_at(&self, slot: u32) -> &Triangle {
         &self.triangles[slot as usize]
     }
 
-    /// The mesh number of the triangle at a slot of the hierarchy's order.
+    /// Returns the mesh number of the triangle at a slot of the hierarchy's order.
     #[inline]
     pub fn id_at(&self, slot: u32) -> u32 {
         self.ids[slot as usize]
     }
 
-    /// The triangle at a slot of the hierarchy's order, with its squared distance from `p`.
+    /// Returns the triangle at a slot of the hierarchy's order, with its squared distance from `p`.
     #[inline]
     pub fn hit(&self, slot: u32, p: DVec3) -> Hit {
         Hit { triangle: self.id_at(slot), distance_squared: self.triangle_at(slot).distance_squared(p) }
     }
 
-    /// The closest to eight points of the triangles at `slots`, as [`closest`](Self::closest) finds it among all.
+    /// Returns the closest to eight points of the triangles at `slots`, as
+    /// [`closest`](Self::closest) finds it among all.
     ///
     /// # Panics
     /// When there are none.

@@ -16,11 +16,11 @@ pub struct Closest8 {
 }
 
 impl Closest8 {
-    /// Before anything is offered.
+    /// The state before anything is offered.
     pub const NONE: Closest8 = Closest8 { squared: [f64::INFINITY; 8], ids: [f64::INFINITY; 8] };
 
-    /// Offers the triangle with number `id` to the points of one vector. Of equally near ones the lowest number stays,
-    /// as in [`Hit::before`].
+    /// Offers the triangle with number `id` to the points of one vector. Of equally near ones the
+    /// lowest number stays, as in [`Hit::before`].
     #[inline(always)]
     pub fn offer<S: Simd>(
         &mut self,
@@ -38,7 +38,8 @@ impl Closest8 {
         before.select(id, ids).store(&mut self.ids, vector);
     }
 
-    /// The same with `id` for what is infinitely far, so that there is a triangle whatever is offered.
+    /// Returns the state before anything is offered, with triangle `id` infinitely far: there is a
+    /// triangle whatever is offered.
     #[inline(always)]
     pub(super) fn unless_nearer(id: u32) -> Closest8 {
         Closest8 { ids: [f64::from(id); 8], ..Closest8::NONE }
@@ -53,7 +54,8 @@ impl Closest8 {
         }
     }
 
-    /// Sets how near anything must be to matter to each point, with what bounds may be too large by.
+    /// Sets the distance within which a triangle matters to each point. `slack` is the error of
+    /// bounds.
     #[inline(always)]
     pub(super) fn limits(&self, slack: f64, limits: &mut [f32; 8]) {
         for (limit, &squared) in limits.iter_mut().zip(&self.squared) {
@@ -61,7 +63,7 @@ impl Closest8 {
         }
     }
 
-    /// What was found; without meaning for points that nothing was offered to.
+    /// Returns the closest triangles; without meaning for points that nothing was offered to.
     #[inline(always)]
     pub fn hits(&self) -> [Hit; 8] {
         let mut hits = [Hit { triangle: 0, distance_squared: 0.0 }; 8];

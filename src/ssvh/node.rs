@@ -8,7 +8,7 @@ use pulp::Simd;
 /// Children of a node.
 pub(super) const WIDTH: usize = 8;
 
-/// What the lanes of a node stand for.
+/// The kind of a node's children.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Level {
     /// `children` are node numbers.
@@ -45,9 +45,9 @@ impl Node {
         level: Level::Leaf,
     };
 
-    /// Appends a child whose volume is `swept`, rounded to f32 and widened to enclose `spheres` again;
-    /// the radius that it has is not needed for that.
-    /// Returns the volume as it is stored. Coordinates are relative to the hierarchy's centre.
+    /// Appends a child whose volume is `swept`, rounded to f32 and widened to enclose `spheres`
+    /// again; the radius that it has is not needed for that. Returns the volume as it is stored.
+    /// Coordinates are relative to the hierarchy's centre.
     pub(super) fn push(&mut self, child: u32, swept: &Swept, spheres: &[Sphere]) -> Swept {
         let lane = self.count as usize;
         let rounded = Swept {
@@ -72,7 +72,7 @@ impl Node {
         Swept { radius: f64::from(radius), ..rounded }
     }
 
-    /// The volume in `lane`, relative to the hierarchy's centre.
+    /// Returns the volume in `lane`, relative to the hierarchy's centre.
     pub(super) fn swept(&self, lane: usize) -> Swept {
         let vector =
             |a: &[[f32; WIDTH]; 3]| DVec3::from_array([0, 1, 2].map(|axis| f64::from(a[axis][lane])));
@@ -102,8 +102,8 @@ impl Node {
         distances
     }
 
-    /// Whether one of eight points, as [`distances`](Self::distances) has it for one from eight volumes, is as near to the
-    /// volume in `lane` as its limit.
+    /// Whether one of eight points is as near to the volume in `lane` as its limit. The distance is
+    /// that of [`distances`](Self::distances), which has one point and eight volumes.
     #[inline(always)]
     pub(super) fn is_near<S: Simd>(
         &self,
@@ -128,7 +128,8 @@ impl Node {
     }
 }
 
-/// How far points at `from` of the centre of a rectangle with the axes `u` and `v` are from it.
+/// Returns the distances of points from a rectangle with the axes `u` and `v`. `from` are the
+/// points relative to its centre.
 #[inline(always)]
 fn core_distance<S: Simd>(
     simd: S,

@@ -24,27 +24,28 @@ impl Hit {
     }
 }
 
-/// Rounding of a bound in units of the distances involved: 64 units in the last place of f32. The bound
-/// takes a few dozen roundings, each of at most half a unit. Too large would only visit more nodes; too
-/// small could lose the closest triangle.
+/// Rounding of a bound in units of the distances involved: 64 units in the last place of f32. The
+/// bound takes a few dozen roundings, each of at most half a unit. Too large would only visit more
+/// nodes; too small could lose the closest triangle.
 const SLACK: f64 = 64.0 / 16_777_216.0;
 
 /// The deepest stack: at most 11 levels of nodes for 2^32 triangles, and 7 siblings wait on each.
 const STACK: usize = 11 * (WIDTH - 1) + 1;
 
 impl Ssvh {
-    /// The closest triangle to `p`. Equal distances go to the lowest triangle number.
+    /// Returns the closest triangle to `p`. Equal distances go to the lowest triangle number.
     pub fn closest(&self, p: DVec3) -> Hit {
         self.closest_from(p, self.ids[0])
     }
 
-    /// The same as [`closest`](Self::closest), faster when `guess` is a triangle close to `p`.
+    /// Returns what [`closest`](Self::closest) returns, faster when `guess` is a triangle close to
+    /// `p`.
     pub fn closest_from(&self, p: DVec3, guess: u32) -> Hit {
         let distance_squared = self.triangles[self.slot(guess)].distance_squared(p);
         dispatch(Improve { tree: self, p, best: Hit { triangle: guess, distance_squared } })
     }
 
-    /// The closest triangle if its distance is at most `bound`.
+    /// Returns the closest triangle if its distance is at most `bound`.
     pub fn closest_within(&self, p: DVec3, bound: f64) -> Option<Hit> {
         // No triangle has this number, so a real one at exactly the bound comes before it.
         let best = Hit { triangle: u32::MAX, distance_squared: bound * bound };
@@ -52,8 +53,9 @@ impl Ssvh {
         (hit.triangle != u32::MAX).then_some(hit)
     }
 
-    /// The closest triangles to eight points, each as [`closest`](Self::closest) finds it, in one descent:
-    /// it pays when the points are about as near to each other as triangles are large, or nearer.
+    /// Returns the closest triangles to eight points, each as [`closest`](Self::closest) finds it,
+    /// in one descent: it pays when the points are about as near to each other as triangles are
+    /// large, or nearer.
     pub fn closest8(&self, points: &[DVec3; 8], guess: u32) -> [Hit; 8] {
         dispatch(Improve8 { tree: self, points, guess })
     }
@@ -109,7 +111,7 @@ impl WithSimd for Improve<'_> {
     }
 }
 
-/// The distance by its square, with what bounds may be too large by.
+/// Returns the distance by its square, with what bounds may be too large by.
 #[inline(always)]
 pub(super) fn widened(squared: f64, slack: f64) -> f32 {
     ((squared.sqrt() + slack) as f32).next_up()
@@ -153,15 +155,16 @@ impl Visit for Closest<'_> {
     }
 }
 
-/// What is done with the triangles that a descent for eight points comes to.
+/// A visitor of the triangles that a descent for eight points comes to.
 pub(super) trait Visit {
-    /// Takes the triangle at a slot of the hierarchy's order. May lower the limits, within which of each point triangles
-    /// matter. Returns whether to go on.
+    /// Takes the triangle at a slot of the hierarchy's order. May lower the limits, within which of
+    /// each point triangles matter. Returns whether to go on.
     fn visit<S: Simd>(&mut self, simd: S, slot: u32, limits: &mut [f32; 8]) -> bool;
 }
 
-/// Goes down to all triangles that can be within the limits of eight points. A volume matters when it is near enough to
-/// their centre to be near enough to any of them, and then when it is to one of them.
+/// Goes down to all triangles that can be within the limits of eight points. A volume matters when
+/// it is near enough to their centre to be near enough to any of them, and then when it is to one
+/// of them.
 #[inline(always)]
 pub(super) fn descend<S: Simd>(
     simd: S,
@@ -246,13 +249,13 @@ struct Stack {
 }
 
 impl Stack {
-    /// The stack with the root on it.
+    /// Returns the stack with the root on it.
     #[inline(always)]
     fn new() -> Self {
         Stack { entries: [(0.0, 0); STACK], waiting: 1 }
     }
 
-    /// The next node whose volume is within `limit`.
+    /// Returns the next node whose volume is within `limit`.
     #[inline(always)]
     fn pop<'t>(&mut self, tree: &'t Ssvh, limit: f32) -> Option<&'t Node> {
         while self.waiting > 0 {

@@ -3,7 +3,7 @@ use crate::mesh::TriMesh;
 use glam::DVec3;
 use proptest::prelude::*;
 
-/// The oracle: every triangle, in order.
+/// Returns the oracle: every triangle, in order.
 fn brute_force(tree: &Ssvh, p: DVec3) -> Hit {
     (0..tree.len() as u32)
         .map(|triangle| Hit { triangle, distance_squared: tree.triangle(triangle).distance_squared(p) })
@@ -17,7 +17,8 @@ fn random(state: &mut u64) -> f64 {
     (*state >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// A soup of `count` triangles of about `size` in the unit cube, moved by `offset`, with nasty ones mixed in.
+/// Returns a soup of `count` triangles of about `size` in the unit cube, moved by `offset`, with
+/// nasty ones mixed in.
 fn soup(count: usize, size: f64, offset: f64, seed: u64) -> TriMesh {
     let mut state = seed;
     let mut mesh = TriMesh::default();

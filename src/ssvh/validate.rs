@@ -20,7 +20,8 @@ pub struct InvalidSsvh {
 }
 
 impl Ssvh {
-    /// Checks every volume against every triangle below it, and that each triangle is in exactly one leaf.
+    /// Checks every volume against every triangle below it, and that each triangle is in exactly
+    /// one leaf.
     ///
     /// # Errors
     /// The first volume that misses a triangle by more than the rounding that queries allow for.

@@ -1,7 +1,7 @@
 //! Confirms candidates against the finished mesh.
 //!
-//! Tips of creases beyond the cells that see them are recovered after the search, so some candidates are
-//! on the right side of the mesh in the end.
+//! Tips of creases beyond the cells that see them are recovered after the search, so some
+//! candidates are on the right side of the mesh in the end.
 
 use super::search::{Missed, MissedCandidate, MissedCandidates};
 use crate::geom::triangle::Triangle;
@@ -12,17 +12,19 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Depth on the wrong side of the mesh, in voxels, up to which a candidate is part of the mesh's error.
+/// Depth on the wrong side of the mesh, in voxels, up to which a candidate is part of the mesh's
+/// error.
 pub(super) const MIN_DEPTH: f64 = 0.05;
 
-/// Largest distance, in voxels, of a triangle that decides about a candidate. Where no triangle is that
-/// near, the nodes around the candidate decide.
+/// Largest distance, in voxels, of a triangle that decides about a candidate. Where no triangle is
+/// that near, the nodes around the candidate decide.
 const MAX_DISTANCE: f64 = 2.0;
 
 /// Keeps the candidates that are on the wrong side of `mesh`.
 ///
 /// `mesh` is the result, or the part of it around the candidates. `leaves` gives the range of its
-/// triangles by the origin of their leaf; a triangle reaches at most `stray` voxels beyond its leaf.
+/// triangles by the origin of their leaf; a triangle reaches at most `stray` voxels beyond its
+/// leaf.
 ///
 /// # Errors
 /// When the run is cancelled.
@@ -49,8 +51,8 @@ pub fn confirm_missed(
 #[derive(Clone, Copy)]
 struct Nearest {
     distance: f64,
-    /// Cosine between the triangle's normal and the way to the candidate. Of triangles that meet in the
-    /// closest point, the one with the largest cosine in size knows the candidate's side.
+    /// Cosine between the triangle's normal and the way to the candidate. Of triangles that meet in
+    /// the closest point, the one with the largest cosine in size knows the candidate's side.
     cosine: f64,
 }
 

@@ -4,8 +4,8 @@ use crate::ssvh::Ssvh;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Size of a unit vector's coordinate up to which it counts as zero. This value makes the 26 directions
-/// about equally likely.
+/// Size of a unit vector's coordinate up to which it counts as zero. This value makes the 26
+/// directions about equally likely.
 const FLAT: f64 = 0.4;
 
 /// A set of directions, a bit for each of 3^3.
@@ -57,8 +57,8 @@ fn direction(normal: DVec3) -> u8 {
     9 * digit(normal.x) + 3 * digit(normal.y) + digit(normal.z)
 }
 
-/// Returns the vector in the middle of a direction. The direction of a triangle without a normal is at
-/// a right angle to all others.
+/// Returns the vector in the middle of a direction. The direction of a triangle without a normal is
+/// at a right angle to all others.
 fn vector(direction: usize) -> DVec3 {
     DVec3::new((direction / 9) as f64, (direction / 3 % 3) as f64, (direction % 3) as f64) - 1.0
 }

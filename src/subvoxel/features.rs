@@ -24,7 +24,8 @@ pub struct MissedFeature {
     pub kind: MissedKind,
     /// The deepest point of the feature that was found, in model units.
     pub at: [f64; 3],
-    /// Distance of that point from the true surface, in voxels: about half of the feature's thickness.
+    /// Distance of that point from the true surface, in voxels: about half of the feature's
+    /// thickness.
     pub depth: f64,
     /// Number of points that were found.
     pub points: usize,
@@ -93,8 +94,9 @@ impl MissedFeature {
     }
 }
 
-/// Returns the groups of candidates of one kind in cells that touch each other. `missed` is sorted by
-/// kind and cell. Each group holds ascending numbers, and groups come in the order of their first ones.
+/// Returns the groups of candidates of one kind in cells that touch each other. `missed` is sorted
+/// by kind and cell. Each group holds ascending numbers, and groups come in the order of their
+/// first ones.
 fn groups(missed: &[MissedCandidate]) -> Vec<Vec<usize>> {
     let mut sets = UnionFind::new(missed.len() as u32);
     let key = |candidate: &MissedCandidate| (candidate.missed, candidate.cell);

@@ -60,8 +60,8 @@ const MAX_QUERIES_ON_EDGE: usize = 6;
 /// The most distance queries in one cell.
 const MAX_QUERIES_IN_CELL: usize = 6;
 
-/// The fewest corners with known distances of a cell that is searched. Fewer do not tell that there is
-/// something between them.
+/// The fewest corners with known distances of a cell that is searched. Fewer do not tell that there
+/// is something between them.
 const MIN_KNOWN: usize = 4;
 
 /// Depth, in voxels, up to which a point does not count: rounding.
@@ -159,8 +159,8 @@ impl Search<'_> {
         found
     }
 
-    /// Returns the closest triangles of the corners of a leaf's cells, -1 where none is known, and the
-    /// directions of these triangles. `around` is the leaf and the next ones, z fastest.
+    /// Returns the closest triangles of the corners of a leaf's cells, -1 where none is known, and
+    /// the directions of these triangles. `around` is the leaf and the next ones, z fastest.
     fn corners(&self, around: [Option<LeafId>; 8]) -> ([i32; NODES], [Directions; NODES]) {
         let ids = around.map(|leaf| self.near.nodes.of_leaf(leaf?));
         // All of the leaf itself, and of the next ones the first layers only.
@@ -186,8 +186,8 @@ impl Search<'_> {
         (triangles, sets)
     }
 
-    /// Searches the three edges that start at a cell's lowest node. Searches the cell itself if its corners
-    /// have one sign.
+    /// Searches the three edges that start at a cell's lowest node. Searches the cell itself if its
+    /// corners have one sign.
     fn cell(&self, leaf: LeafId, number: usize, triangles: [i32; 8], found: &mut Vec<MissedCandidate>) {
         let local = Ijk::in_leaf(Ijk::default(), number);
         let cell = self.signs.origin(leaf) + local;
@@ -278,7 +278,8 @@ impl Search<'_> {
         None
     }
 
-    /// Finds a point in a cell with the other sign than its corners. Returns the point and its depth.
+    /// Finds a point in a cell with the other sign than its corners. Returns the point and its
+    /// depth.
     fn inside_cell(&self, cell: Ijk, corners: &[Option<Corner>; 8], missed: Missed) -> Option<(DVec3, f64)> {
         let voxel = self.lattice.voxel;
         let lo = DVec3::from(self.lattice.world_from_index(cell));
@@ -319,8 +320,8 @@ impl Search<'_> {
 
 /// Unites the directions at all corners of each cell, by the cell's lowest node.
 ///
-/// `sets` holds the directions at nodes. The axes follow one another. The last nodes along an axis have
-/// no cell; what is returned for them means nothing.
+/// `sets` holds the directions at nodes. The axes follow one another. The last nodes along an axis
+/// have no cell; what is returned for them means nothing.
 fn around_cells(mut sets: [Directions; NODES]) -> [Directions; NODES] {
     for step in [1, SIDE, SIDE * SIDE] {
         for n in 0..NODES - step {

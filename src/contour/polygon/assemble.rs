@@ -146,7 +146,7 @@ fn in_leaf(
     let mut triangles = Vec::new();
     let mut sizes = sizes.iter_mut();
     let grid = &cells.context.grid;
-    let is_open = cells.context.crossings.numbers.is_open();
+    let is_partial = cells.context.crossings.numbers.is_partial();
     for_polygons(
         cells,
         faces,
@@ -154,7 +154,7 @@ fn in_leaf(
         leaf,
         |EdgePolygon { polygon, envelope, fit, piece, node, number, along, is_jump }| {
             let size = sizes.next();
-            if is_open && polygon.corners().iter().any(|corner| is_missing(corner.position)) {
+            if is_partial && polygon.corners().iter().any(|corner| is_missing(corner.position)) {
                 return;
             }
             triangles.clear();

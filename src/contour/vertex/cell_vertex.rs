@@ -42,10 +42,10 @@ pub enum Placement {
     Clamped,
 }
 
-/// Stands for the position of a vertex that is not made: its cell lacks crossings ([`EdgeNumbers::is_open`]). Nothing of the
+/// Stands for the position of a vertex that is not made: its cell lacks crossings ([`EdgeNumbers::is_partial`]). Nothing of the
 /// cell gets into the mesh.
 ///
-/// [`EdgeNumbers::is_open`]: crate::edge::EdgeNumbers::is_open
+/// [`EdgeNumbers::is_partial`]: crate::edge::EdgeNumbers::is_partial
 pub const MISSING: [f64; 3] = [f64::NAN; 3];
 
 /// Whether a position is [`MISSING`].

@@ -73,7 +73,7 @@ impl LeafVertices {
             let id = constant_case(table, corners.mask(number));
             *cell = CellCase { first_vertex: first_vertex + first as u32, case: id };
             let case = table.case(id);
-            if context.crossings.numbers.is_open() && !placer.has_all_crossings(case, number) {
+            if context.crossings.numbers.is_partial() && !placer.has_all_crossings(case, number) {
                 let vertices = &mut placer.vertices[first..first + case.sheets().len()];
                 vertices.fill(cell_vertex::MISSING);
                 first += case.sheets().len();

@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 
 type Corners = [[f64; 3]; 3];
 
-/// A runner whose cases are the same each time, so that what they cover can be counted.
+/// Returns a runner whose cases are the same each time, so that what they cover can be counted.
 fn runner(cases: u32) -> TestRunner {
     let is_heavy = std::env::var_os("EXOCARP_HEAVY").is_some_and(|v| v == "1");
     let cases = if is_heavy { 50 * cases } else { cases };
@@ -143,7 +143,7 @@ fn random_pairs_on_a_grid() {
     );
 }
 
-/// All triangles with area whose corners are nodes of a grid, one for each three nodes.
+/// Returns all triangles with area whose corners are nodes of a grid, one for each three nodes.
 fn triangles_on_a_grid([x, y, z]: [usize; 3]) -> Vec<([usize; 3], Corners)> {
     let nodes: Vec<[f64; 3]> =
         (0..x * y * z).map(|n| [n / (y * z), n / z % y, n % z].map(|i| i as f64)).collect();

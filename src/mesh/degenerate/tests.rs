@@ -6,7 +6,7 @@ use crate::mesh::{CleanReport, Topology, TriMesh, clean, measure, shapes};
 
 type Point = [f64; 3];
 
-/// The tetrahedron with a corner at the origin and edges of length 4 along the axes.
+/// Returns the tetrahedron with a corner at the origin and edges of length 4 along the axes.
 fn tetrahedron() -> TriMesh {
     TriMesh {
         vertices: vec![[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]],
@@ -48,7 +48,7 @@ fn wedge(mesh: &mut TriMesh, t: usize, k: usize, middle: Point) {
     mesh.triangles.extend([other, [b, a, m]]);
 }
 
-/// The point between the corners `k` and `k + 1` of a triangle at `share` of 4 parts.
+/// Returns the point between the corners `k` and `k + 1` of a triangle at `share` of 4 parts.
 fn between(mesh: &TriMesh, t: usize, k: usize, share: f64) -> Point {
     let corners = mesh.corners(t);
     let (a, b) = (corners[k], corners[(k + 1) % 3]);

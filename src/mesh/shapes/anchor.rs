@@ -24,8 +24,8 @@ pub(super) const VOLUME: f64 = {
     plate + height * PI * ((foot * foot + foot * top + top * top) / 3.0 - BORE * BORE)
 };
 
-/// A plate of 3 x 2 x 0.3 with chamfered corners, four bolt holes, two slots, and a conical boss
-/// that a bore goes through.
+/// Returns a plate of 3 x 2 x 0.3 with chamfered corners, four bolt holes, two slots, and a conical
+/// boss that a bore goes through.
 pub fn anchor(detail: u32) -> TriMesh {
     let mut b = Builder::new(detail);
     let (x, y, thickness, c) = PLATE;
@@ -63,7 +63,7 @@ pub fn anchor(detail: u32) -> TriMesh {
     b.finish()
 }
 
-/// The rims of bolt holes and slots at z = 0, counter-clockwise from above.
+/// Returns the rims of bolt holes and slots at z = 0, counter-clockwise from above.
 fn holes(b: &mut Builder) -> Vec<Vec<u32>> {
     let mut all = Vec::new();
     for (sx, sy) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {

@@ -4,7 +4,7 @@ use super::builder::{Builder, Point, reversed};
 use super::spheres::{Side, add_sphere};
 use crate::mesh::TriMesh;
 
-/// The cube from (-1, -1, -1) to (1, 1, 1).
+/// Returns the cube from (-1, -1, -1) to (1, 1, 1).
 pub fn cube(detail: u32) -> TriMesh {
     let mut b = Builder::new(detail);
     add_box(&mut b, [-1.0; 3], [1.0; 3]);
@@ -14,8 +14,8 @@ pub fn cube(detail: u32) -> TriMesh {
 /// The radius of the cavity of [`hollow_box`].
 pub(super) const CAVITY_RADIUS: f64 = 0.6;
 
-/// The cube of side 2 with a spherical cavity of radius 0.6 about its centre: two closed surfaces,
-/// the inner one facing inward.
+/// Returns the cube of side 2 with a spherical cavity of radius 0.6 about its centre: two closed
+/// surfaces, the inner one facing inward.
 pub fn hollow_box(detail: u32) -> TriMesh {
     let mut b = Builder::new(detail);
     add_box(&mut b, [-1.0; 3], [1.0; 3]);
@@ -27,7 +27,7 @@ pub fn hollow_box(detail: u32) -> TriMesh {
 /// degrees.
 pub(super) const WEDGE_HALF_WIDTH: f64 = 0.2;
 
-/// A wedge of length 2 and depth 2 that ends in a knife edge.
+/// Returns a wedge of length 2 and depth 2 that ends in a knife edge.
 pub fn wedge(detail: u32) -> TriMesh {
     let mut b = Builder::new(detail);
     let profile = [[-1.0, -WEDGE_HALF_WIDTH], [1.0, 0.0], [-1.0, WEDGE_HALF_WIDTH]];
@@ -38,7 +38,7 @@ pub fn wedge(detail: u32) -> TriMesh {
 /// Half the side of the base of [`needle`].
 pub(super) const NEEDLE_HALF_SIDE: f64 = 0.05;
 
-/// A four-sided spike, 2 long and 0.1 wide at its base.
+/// Returns a four-sided spike, 2 long and 0.1 wide at its base.
 pub fn needle(detail: u32) -> TriMesh {
     let mut b = Builder::new(detail);
     let s = NEEDLE_HALF_SIDE;
@@ -54,7 +54,7 @@ pub fn needle(detail: u32) -> TriMesh {
 /// The thickness of the fin of [`fin`]: below a voxel at resolution 64.
 pub(super) const FIN_THICKNESS: f64 = 0.02;
 
-/// A block of 2 x 2 x 0.5 with a thin upright fin on it, 1.6 long, 0.8 high and 0.02 thick.
+/// Returns a block of 2 x 2 x 0.5 with a thin upright fin on it, 1.6 long, 0.8 high and 0.02 thick.
 pub fn fin(detail: u32) -> TriMesh {
     let mut b = Builder::new(detail);
     let base = rectangle(&mut b, [1.0, 1.0], -0.5);
@@ -75,8 +75,8 @@ pub fn fin(detail: u32) -> TriMesh {
 /// its holes.
 pub(super) const BRACKET: (f64, f64, f64, f64) = (2.0, 0.3, 1.2, 0.25);
 
-/// An L-bracket: two legs 2 long, 0.3 thick and 1.2 wide, each with a hole of radius 0.25 through
-/// it.
+/// Returns an L-bracket: two legs 2 long, 0.3 thick and 1.2 wide, each with a hole of radius 0.25
+/// through it.
 pub fn bracket(detail: u32) -> TriMesh {
     let (leg, t, width, radius) = BRACKET;
     let mut b = Builder::new(detail);

@@ -23,19 +23,19 @@ pub(super) struct Builder {
 }
 
 impl Builder {
-    /// A builder of triangles with about `detail` sides per unit of length.
+    /// Returns a builder of triangles with about `detail` sides per unit of length.
     pub fn new(detail: u32) -> Self {
         // Below two the holes and arcs of the models degenerate to segments.
         let side = 1.0 / f64::from(detail.max(2));
         Builder { mesh: TriMesh::default(), side, curves: BTreeMap::new() }
     }
 
-    /// The finished mesh.
+    /// Returns the finished mesh.
     pub fn finish(self) -> TriMesh {
         self.mesh
     }
 
-    /// The number of sides that a curve of `length` is divided into, at least `least`.
+    /// Returns the number of sides that a curve of `length` is divided into, at least `least`.
     pub fn divisions(&self, length: f64, least: usize) -> usize {
         ((length / self.side).round() as usize).max(least)
     }
@@ -51,7 +51,7 @@ impl Builder {
         points.into_iter().map(|p| self.vertex(p)).collect()
     }
 
-    /// The position of a vertex.
+    /// Returns the position of a vertex.
     pub fn position(&self, v: u32) -> Point {
         self.mesh.vertices[v as usize]
     }
@@ -71,8 +71,9 @@ impl Builder {
         self.curves.insert((a.min(b), a.max(b)), inner);
     }
 
-    /// All vertices of the curve from corner `a` to corner `b`, both inclusive. The first call for
-    /// a pair of corners makes a straight curve unless [`curve`](Self::curve) made another before.
+    /// Returns all vertices of the curve from corner `a` to corner `b`, both inclusive. The first
+    /// call for a pair of corners makes a straight curve unless [`curve`](Self::curve) made another
+    /// before.
     pub fn walk(&mut self, a: u32, b: u32) -> Vec<u32> {
         let key = (a.min(b), a.max(b));
         if !self.curves.contains_key(&key) {
@@ -90,7 +91,7 @@ impl Builder {
         all
     }
 
-    /// The closed loop through `corners`, each vertex once.
+    /// Returns the closed loop through `corners`, each vertex once.
     pub fn outline(&mut self, corners: &[u32]) -> Vec<u32> {
         let mut all = Vec::new();
         for (i, &a) in corners.iter().enumerate() {
@@ -101,14 +102,14 @@ impl Builder {
         all
     }
 
-    /// A closed loop of vertices around `centre`: at `radius` in the plane of the axes `u` and `v`,
-    /// running from `u` to `v`.
+    /// Returns a closed loop of vertices around `centre`: at `radius` in the plane of the axes `u`
+    /// and `v`, running from `u` to `v`.
     pub fn circle(&mut self, centre: Point, u: usize, v: usize, radius: f64) -> Vec<u32> {
         let n = self.divisions(std::f64::consts::TAU * radius, 12).div_ceil(4) * 4;
         self.circle_of(n, centre, u, v, radius)
     }
 
-    /// A [`circle`](Self::circle) of exactly `n` vertices.
+    /// Returns a [`circle`](Self::circle) of exactly `n` vertices.
     pub fn circle_of(&mut self, n: usize, centre: Point, u: usize, v: usize, radius: f64) -> Vec<u32> {
         self.vertices((0..n).map(|i| {
             let (sin, cos) = (std::f64::consts::TAU * i as f64 / n as f64).sin_cos();
@@ -119,7 +120,7 @@ impl Builder {
         }))
     }
 
-    /// The loop `around`, moved by `by`.
+    /// Returns the loop `around`, moved by `by`.
     pub fn moved(&mut self, around: &[u32], by: Point) -> Vec<u32> {
         let points: Vec<Point> = around.iter().map(|&v| add(self.position(v), by)).collect();
         self.vertices(points)
@@ -193,9 +194,9 @@ impl Builder {
         });
     }
 
-    /// A patch that is a graph over the plane across axis `drop`: triangulated in that plane, and
-    /// each new vertex moved onto the surface by `lift`, which must change the coordinate `drop`
-    /// only. As a graph it cannot intersect itself.
+    /// Returns a patch that is a graph over the plane across axis `drop`: triangulated in that
+    /// plane, and each new vertex moved onto the surface by `lift`, which must change the
+    /// coordinate `drop` only. As a graph it cannot intersect itself.
     pub fn lifted(&mut self, loops: &[&[u32]], drop: usize, lift: impl Fn(Point) -> Point) {
         let (u, v) = ((drop + 1) % 3, (drop + 2) % 3);
         let mut ids: Vec<u32> = loops.iter().flat_map(|l| l.iter().copied()).collect();
@@ -214,7 +215,7 @@ impl Builder {
         }
     }
 
-    /// The normal of a closed loop, of the length of twice its area.
+    /// Returns the normal of a closed loop, of the length of twice its area.
     fn newell(&self, around: &[u32]) -> Point {
         let mut n = [0.0; 3];
         for (i, &v) in around.iter().enumerate() {
@@ -264,17 +265,17 @@ fn closed(around: &[u32]) -> Vec<u32> {
     around.iter().chain(&around[..1]).copied().collect()
 }
 
-/// The same loop in the other direction.
+/// Returns the same loop in the other direction.
 pub(super) fn reversed(around: &[u32]) -> Vec<u32> {
     around.iter().rev().copied().collect()
 }
 
-/// The sum of two vectors.
+/// Returns the sum of two vectors.
 pub(super) fn add(a: Point, b: Point) -> Point {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// The point at fraction `t` of the way from `a` to `b`.
+/// Returns the point at fraction `t` of the way from `a` to `b`.
 pub(super) fn mix(a: Point, b: Point, t: f64) -> Point {
     std::array::from_fn(|i| if a[i] == b[i] { a[i] } else { a[i] + t * (b[i] - a[i]) })
 }

@@ -20,7 +20,8 @@ pub(super) const VOLUME: f64 = {
     8.0 - PI * BITE * BITE * BITE / 6.0 - 0.5 * PI * GROOVE * GROOVE - 2.0 * PI * BORE * BORE - cap
 };
 
-/// The cube of side 2 about the origin, carved in four places that keep clear of one another:
+/// Returns the cube of side 2 about the origin, carved in four places that keep clear of one
+/// another:
 ///
 /// ```text
 ///      z = 1 seen from above                 x = 1 seen from outside
@@ -96,7 +97,7 @@ impl Corners {
         Corners { cube, bite, groove_x, groove_y }
     }
 
-    /// The corner of the cube with these signs.
+    /// Returns the corner of the cube with these signs.
     fn of(&self, x: i32, y: i32, z: i32) -> u32 {
         match (x, y, z) {
             (1, -1, -1) => self.cube[0],
@@ -109,15 +110,16 @@ impl Corners {
     }
 }
 
-/// The unit direction whose components have the ratio of the sines of `weights` of `n` right
-/// angles. With one weight zero it divides the quarter circle between the other two axes evenly.
+/// Returns the unit direction whose components have the ratio of the sines of `weights` of `n`
+/// right angles. With one weight zero it divides the quarter circle between the other two axes
+/// evenly.
 fn octant(n: usize, weights: [usize; 3]) -> Point {
     let d = weights.map(|w| (FRAC_PI_2 * w as f64 / n as f64).sin());
     let length = d.iter().map(|x| x * x).sum::<f64>().sqrt();
     d.map(|x| x / length)
 }
 
-/// A point on the corner bite's rim between axis `a` and the next.
+/// Returns a point on the corner bite's rim between axis `a` and the next.
 fn bite_point(n: usize, a: usize, [first, second]: [usize; 2]) -> Point {
     let mut weights = [0; 3];
     weights[a] = first;

@@ -19,9 +19,9 @@ pub(super) const VOLUME: f64 = {
     0.5 * area * (HEIGHT.0 + HEIGHT.1)
 };
 
-/// A flower of six petals: in plan the curve r = 0.8 + 0.6 |sin 3 theta|, above and below it
-/// surfaces that fall from the centre to this rim, where they meet at a sharp edge. Between petals
-/// both have a concave crease from the centre to the notch. Star-shaped about the origin.
+/// Returns a flower of six petals: in plan the curve r = 0.8 + 0.6 |sin 3 theta|, above and below
+/// it surfaces that fall from the centre to this rim, where they meet at a sharp edge. Between
+/// petals both have a concave crease from the centre to the notch. Star-shaped about the origin.
 pub fn flower(detail: u32) -> TriMesh {
     let mut b = Builder::new(detail);
     let notches: Vec<u32> = (0..PETALS).map(|k| b.vertex(rim(TAU * k as f64 / PETALS as f64))).collect();

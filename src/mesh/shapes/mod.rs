@@ -66,7 +66,7 @@ pub enum Volume {
 }
 
 impl Volume {
-    /// The number, in cubic units.
+    /// Returns the number, in cubic units.
     pub fn value(self) -> f64 {
         match self {
             Volume::Exact(v) | Volume::Limit(v) => v,
@@ -74,7 +74,7 @@ impl Volume {
     }
 }
 
-/// The model with this name. Hyphens count as underscores.
+/// Returns the model with this name. Hyphens count as underscores.
 pub fn by_name(name: &str) -> Option<&'static Shape> {
     let name = name.replace('-', "_");
     ALL.iter().find(|s| s.name == name)

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 /// Height of the waves of [`wave`].
 const AMPLITUDE: f64 = 0.2;
 
-/// An open wavy patch over the square from (-1, -1) to (1, 1), its front side up.
+/// Returns an open wavy patch over the square from (-1, -1) to (1, 1), its front side up.
 pub fn wave(detail: u32) -> TriMesh {
     let mut b = Builder::new(detail);
     let n = b.divisions(2.0, 4);

@@ -4,7 +4,7 @@ use super::builder::{Builder, Point, reversed};
 use crate::mesh::TriMesh;
 use std::f64::consts::TAU;
 
-/// A cylinder about the z axis, of radius 1 and height 2.
+/// Returns a cylinder about the z axis, of radius 1 and height 2.
 pub fn cylinder(detail: u32) -> TriMesh {
     let mut b = Builder::new(detail);
     let low = b.circle([0.0, 0.0, -1.0], 0, 1, 1.0);
@@ -18,7 +18,7 @@ pub fn cylinder(detail: u32) -> TriMesh {
 /// Major and minor radius of [`torus`].
 pub(super) const TORUS: (f64, f64) = (1.0, 0.4);
 
-/// A torus about the z axis with radii 1 and 0.4.
+/// Returns a torus about the z axis with radii 1 and 0.4.
 pub fn torus(detail: u32) -> TriMesh {
     let mut b = Builder::new(detail);
     add_torus(&mut b, TORUS, |p| p);

@@ -4,8 +4,8 @@ use super::builder::{Builder, Point, add};
 use crate::mesh::TriMesh;
 use std::collections::BTreeMap;
 
-/// The unit sphere about the origin, its vertices on it: an icosahedron with poles on the z axis,
-/// each face divided evenly.
+/// Returns the unit sphere about the origin, its vertices on it: an icosahedron with poles on the z
+/// axis, each face divided evenly.
 pub fn sphere(detail: u32) -> TriMesh {
     let mut b = Builder::new(detail);
     add_sphere(&mut b, [0.0; 3], 1.0, Side::Outward);
