@@ -20,16 +20,18 @@ use crate::run::{Phase, RunSettings};
 use glam::DVec3;
 use std::time::Instant;
 
-/// Depth of the inset, in voxels. Deeper, and less is left of a thin solid. Less deep, and the strip
-/// between the patch and the section gets so narrow that a patch bent within a voxel pierces it.
+/// Depth of the inset, in voxels. Deeper, and less is left of a thin solid. Less deep, and the
+/// strip between the patch and the section gets so narrow that a patch bent within a voxel pierces
+/// it.
 const INSET_DEPTH: f64 = 0.5;
 
-/// Radius of the pillars below vertices in which parts of S touch, in voxels. A pillar must hold nodes
-/// at each height, and the rim around it must stay apart from the vertex. Much thicker, and it shows.
+/// Radius of the pillars below vertices in which parts of S touch, in voxels. A pillar must hold
+/// nodes at each height, and the rim around it must stay apart from the vertex. Much thicker, and
+/// it shows.
 const PILLAR_RADIUS: f64 = 1.5;
 
-/// Width of the band beyond the shell, in voxels. A lattice edge that crosses the shell ends at most
-/// one voxel beyond it.
+/// Width of the band beyond the shell, in voxels. A lattice edge that crosses the shell ends at
+/// most one voxel beyond it.
 const BAND_MARGIN: f64 = 1.01;
 
 /// Attempts to make the solid: settings that all have in common, and what they took.
@@ -64,8 +66,8 @@ impl Attempts<'_> {
         memory_estimate::check(patch, boundary, at, self.settings.max_memory)
     }
 
-    /// Makes the solid on one side of `surface` on one lattice. The solid's first triangles are those of
-    /// `surface`. `facts` are computed here unless they are known.
+    /// Makes the solid on one side of `surface` on one lattice. The solid's first triangles are
+    /// those of `surface`. `facts` are computed here unless they are known.
     pub fn attempt(
         &mut self,
         surface: &TriMesh,

@@ -196,8 +196,8 @@ pub enum PatchError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Obstacle {
-    /// The section has a rim where the patch has no boundary: sheets of the patch are nearer to each
-    /// other than the lattice resolves.
+    /// The section has a rim where the patch has no boundary: sheets of the patch are nearer to
+    /// each other than the lattice resolves.
     Sheets,
     /// Boundary loops of the patch are nearer to each other than the lattice resolves.
     Loops,

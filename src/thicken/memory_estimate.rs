@@ -9,17 +9,17 @@ use std::f64::consts::PI;
 
 /// Bytes per h^2 of the patch: nodes near it, crossings, contour, strips, shape processing.
 ///
-/// Measured as peak memory on patches of 98 and 2,048 triangles, at 80,000 to 700,000 cells and 4 to
-/// 12 voxels of thickness: 410 for plane ones, 1,074 at most for wavy ones.
+/// Measured as peak memory on patches of 98 and 2,048 triangles, at 80,000 to 700,000 cells and 4
+/// to 12 voxels of thickness: 410 for plane ones, 1,074 at most for wavy ones.
 const BYTES_PER_CELL: f64 = 1100.0;
 
-/// Bytes per node within the thickness of the patch, where that is many voxels: the closest triangle,
-/// and bits. Measured as 9.4 to 10.6 at a thickness of 200 and 286 voxels.
+/// Bytes per node within the thickness of the patch, where that is many voxels: the closest
+/// triangle, and bits. Measured as 9.4 to 10.6 at a thickness of 200 and 286 voxels.
 const BYTES_PER_NODE: f64 = 12.0;
 
-/// Bytes per triangle of the patch: topology, hierarchy, pseudonormals, exact tests, and lists where
-/// triangles are smaller than voxels. Measured as 1,500 to 1,750 on patches of 17,000 and 52,000
-/// triangles at 40 voxels.
+/// Bytes per triangle of the patch: topology, hierarchy, pseudonormals, exact tests, and lists
+/// where triangles are smaller than voxels. Measured as 1,500 to 1,750 on patches of 17,000 and
+/// 52,000 triangles at 40 voxels.
 const BYTES_PER_TRIANGLE: f64 = 1800.0;
 
 /// Checks that a lattice fits into `max_memory` bytes, or into what the system has available.
@@ -44,12 +44,12 @@ pub(super) fn check(
     Err(MemoryError { voxel, needed: needed as u64, allowed, smallest_voxel })
 }
 
-/// Returns the area of the solid's boundary along patch and wall, and the volume of the points within
-/// `r` of the patch on one of its sides.
+/// Returns the area of the solid's boundary along patch and wall, and the volume of the points
+/// within `r` of the patch on one of its sides.
 ///
-/// Points beyond the boundary of the patch are not in the solid, but their closest points have to be
-/// found all the same. The volume is half of what Steiner's formula says of a flat convex patch: a
-/// prism, quarters of a cylinder along the boundary and half of a ball at its corners.
+/// Points beyond the boundary of the patch are not in the solid, but their closest points have to
+/// be found all the same. The volume is half of what Steiner's formula says of a flat convex patch:
+/// a prism, quarters of a cylinder along the boundary and half of a ball at its corners.
 fn area_and_volume(patch: &TriMesh, boundary: &Boundary, r: f64) -> (f64, f64) {
     let area = measure::area(patch);
     let corner = |v: u32| DVec3::from(patch.vertices[v as usize]);

@@ -27,7 +27,8 @@ pub struct ThickenResult {
 ///
 /// # Errors
 /// - [`ThickenError::Settings`]: a setting makes no sense.
-/// - [`ThickenError::Patch`]: the patch is empty, not oriented, not 2-manifold or intersects itself.
+/// - [`ThickenError::Patch`]: the patch is empty, not oriented, not 2-manifold or intersects
+///   itself.
 /// - [`ThickenError::Obstacle`]: no lattice was fine enough for a place of the patch.
 /// - [`ThickenError::Memory`]: the lattice would not fit.
 /// - [`ThickenError::TooManyEdges`], [`ThickenError::TooManyVertices`],

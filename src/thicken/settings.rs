@@ -19,8 +19,8 @@ pub enum Side {
 /// Normals of the section that shape processing works with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SectionNormals {
-    /// Normals of the walls that stand on the boundary's edges: in the plane of the edge's triangle,
-    /// across the edge.
+    /// Normals of the walls that stand on the boundary's edges: in the plane of the edge's
+    /// triangle, across the edge.
     #[default]
     Exact,
     /// Normals of the contour's faces, smoothed in each round (\[WC13\] section 4.3, which does not
@@ -44,8 +44,8 @@ pub struct ThickenSettings {
     ///
     /// With a resolution N, h = (longest side of the patch's bounding box + 2 r) / N.
     pub voxel: Option<VoxelSize>,
-    /// Maximum number of times that the voxel size is halved where the lattice is too coarse for the
-    /// patch. Each time takes four times as long.
+    /// Maximum number of times that the voxel size is halved where the lattice is too coarse for
+    /// the patch. Each time takes four times as long.
     pub max_halvings: u32,
     /// Maximum number of rounds of shape processing (\[WC13\] section 4.3, which makes 10 to 20);
     /// 0 leaves the contour as it is.
@@ -54,8 +54,8 @@ pub struct ThickenSettings {
     pub section_normals: SectionNormals,
     /// Precision of the result's coordinates.
     pub precision: Precision,
-    /// Maximum memory in bytes; `None` for what the system has available. A run that would need more
-    /// is refused before it starts.
+    /// Maximum memory in bytes; `None` for what the system has available. A run that would need
+    /// more is refused before it starts.
     pub max_memory: Option<u64>,
 }
 

@@ -1,7 +1,7 @@
-//! The case of a verification, for all of its parts: INPUT with its distance, OUTPUT with its tree,
+//! The data that all parts of a verification share: INPUT with its distance, OUTPUT with its tree,
 //! the scale.
 
-use super::error::{VerifyError, Which};
+use super::error::{MeshRole, VerifyError};
 use super::sampling::{Random, Scale};
 use super::settings::{Subject, VerifySettings};
 use super::welded::{Welded, check};
@@ -16,7 +16,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::OnceLock;
 
-/// Both meshes, ready.
+/// Both meshes: INPUT cleaned, OUTPUT welded.
 #[derive(Debug)]
 pub(super) struct Meshes {
     input: TriMesh,
@@ -25,13 +25,15 @@ pub(super) struct Meshes {
 }
 
 impl Meshes {
+    /// Prepares both meshes.
+    ///
     /// # Errors
-    /// [`VerifyError`]: a mesh that nothing can be said about.
+    /// [`VerifyError::NoTriangles`], [`VerifyError::Mesh`].
     pub fn new(input: &TriMesh, output: &TriMesh) -> Result<Self, VerifyError> {
-        check(input, Which::Input)?;
+        check(input, MeshRole::Input)?;
         let (input, _) = clean(input.clone());
-        let output = Welded::new(output, Which::Output)?;
-        for (which, mesh) in [(Which::Input, &input), (Which::Output, &output.mesh)] {
+        let output = Welded::new(output, MeshRole::Output)?;
+        for (which, mesh) in [(MeshRole::Input, &input), (MeshRole::Output, &output.mesh)] {
             if mesh.triangles.is_empty() {
                 return Err(VerifyError::NoTriangles(which));
             }
@@ -46,9 +48,9 @@ impl Meshes {
 pub(super) struct Case<'m> {
     pub settings: &'m VerifySettings,
     pub run: &'m RunSettings,
-    /// Signed distance to INPUT.
+    /// Signed distance from INPUT.
     pub distance: SignedDistance<'m>,
-    /// INPUT's triangles in an order in which neighbours follow each other.
+    /// INPUT's triangles in an order in which neighbours in space are near each other.
     pub input_order: Vec<u32>,
     pub output: &'m Welded,
     /// A tree over OUTPUT's triangles with area.
@@ -60,7 +62,7 @@ pub(super) struct Case<'m> {
     pub random: Random,
 }
 
-/// The part of the diagonal by which the distance of a point of the true offset surface may differ
+/// Share of the diagonal by which the distance of a point of the true offset surface may differ
 /// from |D|: far above rounding (1e-16 of the coordinates), far below what an offset could be
 /// judged by.
 const EXACT: f64 = 1e-9;
@@ -70,7 +72,8 @@ impl<'m> Case<'m> {
     /// current rayon pool.
     ///
     /// # Errors
-    /// [`VerifyError`]: a distance that is not finite for this INPUT. [`VerifyError::Cancelled`].
+    /// - [`VerifyError::Setting`]: the distance is not finite for this INPUT.
+    /// - [`VerifyError::Cancelled`].
     pub fn new(
         meshes: &'m Meshes,
         settings: &'m VerifySettings,
@@ -109,24 +112,24 @@ impl<'m> Case<'m> {
         })
     }
 
-    /// The hierarchy over INPUT's triangles.
+    /// Returns the hierarchy over INPUT's triangles.
     pub fn input(&self) -> &Ssvh {
         self.distance.ssvh()
     }
 
-    /// The hierarchy over OUTPUT's triangles.
+    /// Returns the hierarchy over OUTPUT's triangles.
     pub fn output_ssvh(&self) -> &Ssvh {
         self.output_ssvh.get_or_init(|| Ssvh::new(&self.output.mesh))
     }
 
-    /// Returns the most that the distance of a point of the true offset surface may differ from
-    /// |D|.
+    /// Returns the amount, in model units, by which the distance of a point of the true offset
+    /// surface may differ from |D|.
     pub fn exact(&self) -> f64 {
         EXACT * self.scale.diagonal
     }
 
-    /// The voxel size, or without one what the mean area of OUTPUT's triangles suggests: two
-    /// triangles to the square of a voxel.
+    /// Returns the voxel size in model units. Without one, the mean area of OUTPUT's triangles
+    /// suggests it: two triangles to the square of a voxel.
     pub fn voxel(&self) -> f64 {
         self.settings.voxel.unwrap_or_else(|| {
             let mesh = &self.output.mesh;
@@ -139,27 +142,29 @@ impl<'m> Case<'m> {
         matches!(self.settings.subject, Subject::Shell { .. })
     }
 
-    /// Unsigned distance to INPUT; the guess is a triangle near `p`, and becomes the closest one.
+    /// Returns the unsigned distance from INPUT. `guess` is a triangle near `p`, and becomes the
+    /// closest one.
     pub fn to_input(&self, p: DVec3, guess: &mut u32) -> f64 {
         let hit = self.input().closest_from(p, *guess);
         *guess = hit.triangle;
         hit.distance_squared.sqrt()
     }
 
-    /// Distance to OUTPUT; the guess is a triangle near `p`, and becomes the closest one.
+    /// Returns the distance from OUTPUT. `guess` is a triangle near `p`, and becomes the closest
+    /// one.
     pub fn to_output(&self, p: DVec3, guess: &mut u32) -> f64 {
         let hit = self.output_ssvh().closest_from(p, *guess);
         *guess = hit.triangle;
         hit.distance_squared.sqrt()
     }
 
-    /// The corners of an OUTPUT triangle.
+    /// Returns the corners of a triangle of OUTPUT.
     pub fn corners(&self, t: u32) -> [DVec3; 3] {
         self.output.mesh.corners(t as usize).map(DVec3::from)
     }
 }
 
-/// Twice a triangle's area, as a weight.
+/// Returns twice the area of a triangle, as a weight.
 pub(super) fn weight([a, b, c]: [DVec3; 3]) -> f64 {
     (b - a).cross(c - a).length()
 }

@@ -1,4 +1,4 @@
-//! Creases of the true offset surface, and whether OUTPUT has edges along them.
+//! Creases of the true offset surface, and OUTPUT's edges along them.
 
 use super::case::Case;
 use super::input_edges::{Bend, BentEdge, bent_edges};
@@ -7,20 +7,21 @@ use super::sampling::each;
 use crate::run::Cancelled;
 use glam::{DMat3, DVec3};
 
-/// Maximum distance of an edge that counts, in voxels. An edge that is off by more can be seen.
+/// Maximum distance of an edge from a crease, in voxels. An edge that is off by more can be seen.
 const WITHIN: f64 = 0.05;
 
-/// The cosine of the angle below which an edge counts as along a crease. Edges as long as a voxel
-/// with both ends within 5% are within 6 degrees; others are shorter. Edges across are at 45
-/// degrees or more.
+/// Minimum cosine of the angle between a crease and an edge along it. Edges as long as a voxel with
+/// both ends within 5% are within 6 degrees; others are shorter. Edges across are at 45 degrees or
+/// more.
 const ALONG: f64 = 0.96;
 
-/// Samples per voxel of length: an edge is seldom shorter than half a voxel.
+/// Number of samples per voxel of length: an edge is seldom shorter than half a voxel.
 const SAMPLES_PER_VOXEL: f64 = 2.0;
 
-/// Distances from the crease at which its two sides are asked for the closest point, as parts of
-/// |D|. The first finds the right facets, each of the following is larger than the error that the
-/// one before left, and the last is so small that what curvature adds (its square) is below
+/// Distances from the crease at which both sides are asked for the closest point, as shares of |D|.
+///
+/// The first finds the right facets. Each of the following is larger than the error that the one
+/// before left. The last is so small that the error by curvature (its square) is below
 /// [`Case::exact`].
 const STEPS: [f64; 4] = [0.05, 0.01, 1e-3, 1e-5];
 
@@ -30,12 +31,12 @@ struct CreasePoint {
     at: DVec3,
     /// Unit direction of the crease.
     tangent: DVec3,
-    /// The length that it stands for.
+    /// Length of crease that the point stands for, in model units.
     length: f64,
     has_edge: bool,
 }
 
-/// Measures how much of the creases OUTPUT has.
+/// Measures the share of the creases that OUTPUT has.
 pub(super) fn creases(case: &Case) -> Result<CreaseReport, Cancelled> {
     let within = WITHIN * case.voxel();
     let edges = sharp_edges(case);
@@ -61,6 +62,7 @@ pub(super) fn creases(case: &Case) -> Result<CreaseReport, Cancelled> {
     })
 }
 
+/// Returns the edges of INPUT that creases are traced from.
 fn sharp_edges(case: &Case) -> Vec<BentEdge> {
     // At distance 0 the creases are the edges themselves, of both kinds.
     let (mesh, topology) = (case.distance.mesh(), case.distance.topology());
@@ -73,7 +75,7 @@ fn sharp_edges(case: &Case) -> Vec<BentEdge> {
     edges
 }
 
-/// Edge, parameter and length of each sample, evenly along each edge.
+/// Returns edge number, parameter and length of each sample, evenly along each edge.
 fn samples(edges: &[BentEdge], case: &Case) -> Vec<(usize, f64, f64)> {
     let total: f64 = edges.iter().map(BentEdge::length).sum();
     let spacing = (case.voxel() / SAMPLES_PER_VOXEL).max(total / case.settings.samples as f64);
@@ -86,9 +88,11 @@ fn samples(edges: &[BentEdge], case: &Case) -> Vec<(usize, f64, f64)> {
     edges.iter().enumerate().flat_map(of_edge).collect()
 }
 
-/// The crease in the plane across the edge at parameter t, or none if the offset has none there.
-/// Begins where the offsets of the edge's two faces meet. Where those faces end before, the closest
-/// points on both sides name the faces that take their place.
+/// Finds the crease in the plane across the edge at parameter `t`; `None` if the offset has none
+/// there.
+///
+/// The search begins where the offsets of the edge's two faces meet. Where one of these faces ends
+/// before, the closest points on both sides name the faces that follow.
 fn trace(case: &Case, edge: &BentEdge, t: f64, length: f64, guess: &mut u32) -> Option<CreasePoint> {
     let [n1, n2] = edge.normals;
     let along = (edge.ends[1] - edge.ends[0]).normalize_or_zero();
@@ -130,6 +134,7 @@ fn trace(case: &Case, edge: &BentEdge, t: f64, length: f64, guess: &mut u32) -> 
     is_exact.then_some(CreasePoint { at: q, tangent, length: length * stretch, has_edge: false })
 }
 
+/// Whether OUTPUT has an edge along the crease at a point, at most `within` away.
 fn has_edge(case: &Case, point: &CreasePoint, within: f64) -> bool {
     let mut found = false;
     case.tree.near(point.at, within, |t| {

@@ -9,12 +9,17 @@ use crate::run::Cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// The histogram: from 1e-9 of the diagonal, where f32 coordinates end, to all of it.
+/// Power of ten, as a share of the diagonal, at which the histogram begins: where f32 coordinates
+/// end.
 const FIRST_DECADE: i32 = -9;
+
+/// Number of powers of ten in the histogram, up to the whole diagonal.
 const DECADES: u32 = 9;
+
+/// Number of bins per power of ten: narrow enough for a chart.
 const PER_DECADE: u32 = 8;
 
-/// The error of distances over samples of OUTPUT.
+/// Measures the error of distances over samples of OUTPUT.
 pub(super) fn distance_error(case: &Case) -> Result<DistanceReport, Cancelled> {
     let (surface, histogram, wrong_side) = over_surface(case)?;
     let vertices = at_vertices(case)?;
@@ -23,27 +28,29 @@ pub(super) fn distance_error(case: &Case) -> Result<DistanceReport, Cancelled> {
     Ok(DistanceReport { surface, vertices, edge_midpoints, max, max_at, wrong_side, histogram })
 }
 
-/// Vertices and midpoints that are looked at, in multiples of the area-uniform samples. All of them
-/// where a mesh has few; more would take most of the time without finding anything new.
+/// Maximum number of vertices, and of midpoints, in multiples of the area-uniform samples. A mesh
+/// with fewer has all of them looked at; more would take most of the time without finding anything
+/// new.
 const POINTS_PER_SAMPLE: usize = 4;
 
-/// Of more items than are looked at, an even choice.
+/// Chooses items evenly where there are more than are looked at.
 fn chosen<T: Copy>(case: &Case, items: Vec<T>) -> Vec<T> {
     let most = case.settings.samples.saturating_mul(POINTS_PER_SAMPLE);
     if items.len() <= most {
         return items;
     }
-    let place = |i: usize| (i as f64 * (items.len() as f64 / most as f64)) as usize;
-    (0..most).map(|i| items[place(i)]).collect()
+    let index = |i: usize| (i as f64 * (items.len() as f64 / most as f64)) as usize;
+    (0..most).map(|i| items[index(i)]).collect()
 }
 
-/// Error and side of one sample.
+/// Error of one sample, in model units, and its side.
 #[derive(Clone, Copy)]
 struct Sampled {
     error: f64,
     wrong_side: bool,
 }
 
+/// Samples the area.
 fn over_surface(case: &Case) -> Result<(Statistics, Histogram, Option<f64>), Cancelled> {
     let order = case.tree.order();
     let draw = Draw::new(order.iter().map(|&t| weight(case.corners(t))));
@@ -68,6 +75,7 @@ fn over_surface(case: &Case) -> Result<(Statistics, Histogram, Option<f64>), Can
     Ok((statistics(case, errors, at), histogram, share))
 }
 
+/// Samples the vertices.
 fn at_vertices(case: &Case) -> Result<Statistics, Cancelled> {
     let mesh = &case.output.mesh;
     let mut seen = vec![false; mesh.vertices.len()];
@@ -79,6 +87,7 @@ fn at_vertices(case: &Case) -> Result<Statistics, Cancelled> {
     Ok(statistics(case, errors, at))
 }
 
+/// Samples the midpoints of edges.
 fn at_midpoints(case: &Case) -> Result<Statistics, Cancelled> {
     let mesh = &case.output.mesh;
     let first_sides: Vec<(u32, Side)> = edges(case.output).collect();
@@ -103,8 +112,8 @@ fn at_midpoints(case: &Case) -> Result<Statistics, Cancelled> {
     Ok(statistics(case, errors, at))
 }
 
-/// The error at a point with unsigned distance `dis` from INPUT; NaN where there is nothing to
-/// judge.
+/// Returns the error at a point with unsigned distance `dis` from INPUT; NaN where there is nothing
+/// to judge.
 fn error(case: &Case, dis: f64) -> f64 {
     let d = case.r.abs();
     if !case.is_shell() || dis >= 0.75 * d {
@@ -117,12 +126,14 @@ fn error(case: &Case, dis: f64) -> f64 {
     }
 }
 
+/// Returns the statistics of the errors that are judged.
 fn statistics(case: &Case, errors: Vec<f64>, at: impl Fn(usize) -> DVec3) -> Statistics {
     let judged: Vec<usize> = (0..errors.len()).filter(|&i| !errors[i].is_nan()).collect();
     let values = judged.iter().map(|&i| errors[i]).collect();
     case.scale.statistics(values, |i| at(judged[i]))
 }
 
+/// Counts errors by their size as a share of the diagonal.
 fn histogram(errors: &[f64], diagonal: f64) -> Histogram {
     let mut counts = vec![0; (DECADES * PER_DECADE) as usize];
     let last = counts.len() - 1;

@@ -11,12 +11,12 @@ use std::fmt;
 pub enum VerifyError {
     /// A mesh has no triangles with three different corners.
     #[error("{0} has no triangles")]
-    NoTriangles(Which),
+    NoTriangles(MeshRole),
     /// A vertex or a triangle cannot be worked with.
     #[error("{which}: {source}")]
     Mesh {
         /// The mesh.
-        which: Which,
+        which: MeshRole,
         /// The fault of the mesh.
         source: MeshError,
     },
@@ -43,18 +43,18 @@ impl From<Cancelled> for VerifyError {
 
 /// One of the two meshes of a verification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Which {
+pub enum MeshRole {
     /// The mesh that was offset.
     Input,
     /// The mesh that is judged.
     Output,
 }
 
-impl fmt::Display for Which {
+impl fmt::Display for MeshRole {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Which::Input => "INPUT",
-            Which::Output => "OUTPUT",
+            MeshRole::Input => "INPUT",
+            MeshRole::Output => "OUTPUT",
         })
     }
 }

@@ -5,14 +5,14 @@ use crate::mesh::{Topology, TriMesh};
 use crate::ssvh::Ssvh;
 use glam::DVec3;
 
-/// Edges whose normals differ by less than this (radians) are flat: the direction of their bend is
+/// Angle between normals, in radians, below which an edge is flat: the direction of its bend is
 /// rounding.
 const FLAT: f64 = 1e-6;
 
-/// Direction in which an edge bends the offset surface.
+/// The way in which an edge bends the offset surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Bend {
-    /// The offset is an arc about it: convex when growing, concave when shrinking.
+    /// The offset is an arc about the edge: convex when growing, concave when shrinking.
     Round,
     /// The offset has a crease: concave when growing, convex when shrinking.
     Sharp,
@@ -21,30 +21,31 @@ pub(super) enum Bend {
 /// An edge with two triangles that do not lie in one plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BentEdge {
-    /// Ends of the edge.
+    /// Both ends of the edge.
     pub ends: [DVec3; 2],
-    /// Vertex numbers of its ends.
+    /// Vertex numbers of the ends.
     pub vertices: [u32; 2],
-    /// The unit normals of its triangles.
+    /// Unit normals of the edge's triangles.
     pub normals: [DVec3; 2],
-    /// The angle between them, in radians.
+    /// Angle between the normals, in radians.
     pub angle: f64,
-    /// One of its triangles.
+    /// One of the edge's triangles.
     pub triangle: u32,
 }
 
 impl BentEdge {
+    /// Returns the length of the edge, in model units.
     pub fn length(&self) -> f64 {
         (self.ends[1] - self.ends[0]).length()
     }
 
-    /// The point at parameter t from 0 to 1.
+    /// Returns the point at parameter `t`, from 0 to 1.
     pub fn at(&self, t: f64) -> DVec3 {
         self.ends[0] + t * (self.ends[1] - self.ends[0])
     }
 }
 
-/// All edges that bend the offset at distance `r` the given way. Edges with other than two
+/// Finds all edges that bend the offset at distance `r` the given way. Edges with other than two
 /// triangles, or with triangles that run the same way, bound no solid and are left out.
 pub(super) fn bent_edges(
     mesh: &TriMesh,

@@ -7,15 +7,15 @@ use crate::geom::triangle_pair;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, RunSettings};
 
-/// Pairs that are located. More would only fill the screen.
+/// Number of pairs that are located. More would only fill the screen.
 const LOCATED: usize = 10;
 
-/// Findings of one task.
+/// The pairs that one task found.
 #[derive(Default)]
 struct Found {
     tested: u64,
     pairs: u64,
-    /// The first pairs in ascending order, and some more.
+    /// The first pairs, and some more.
     first: Vec<IntersectingPair>,
 }
 
@@ -35,13 +35,14 @@ impl Found {
     }
 }
 
-/// A point in which two triangles of a mesh meet elsewhere than in what they share.
+/// Returns a point in which two triangles of a mesh meet, elsewhere than in the vertices and edges
+/// that they share.
 pub(super) fn meeting_point(mesh: &TriMesh, a: u32, b: u32) -> Option<[f64; 3]> {
     let (va, vb) = (mesh.triangles[a as usize], mesh.triangles[b as usize]);
     triangle_pair::meeting_point(va, mesh.corners(a as usize), vb, mesh.corners(b as usize))
 }
 
-/// The intersecting pairs of a mesh, from a tree over its triangles that have area.
+/// Finds the intersecting pairs of a mesh, by a tree over its triangles that have area.
 pub(super) fn intersections(
     mesh: &Welded,
     tree: &BoxTree,

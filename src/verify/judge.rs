@@ -1,7 +1,7 @@
 //! The figures of a verification, all of them or one by one.
 
 use super::case::{Case, Meshes};
-use super::error::{VerifyError, Which};
+use super::error::{MeshRole, VerifyError};
 use super::report::{
     CreaseReport, DistanceReport, IntersectionReport, Judged, MissingReport, Soundness, TopologyReport,
     VerifyReport,
@@ -14,12 +14,16 @@ use crate::mesh::TriMesh;
 use crate::run::RunSettings;
 use rayon::prelude::*;
 
-/// Judges `output` as the offset surface of `input`. `input` is cleaned first, as for an offset;
-/// `output` is judged as it is.
+/// Judges `output` as the offset surface of `input`.
+///
+/// `input` is cleaned first, as for an offset; `output` is judged as it is. A bad mesh is no error:
+/// the report says what is wrong with it.
 ///
 /// # Errors
-/// [`VerifyError`]: a mesh or a setting that nothing can be said about. [`VerifyError::Cancelled`].
-/// A bad mesh is no error: the report says what is wrong.
+/// - [`VerifyError::NoTriangles`], [`VerifyError::Mesh`]: nothing can be said about one of the
+///   meshes.
+/// - [`VerifyError::Setting`]: a setting is out of range.
+/// - [`VerifyError::Cancelled`].
 pub fn verify(
     input: &TriMesh,
     output: &TriMesh,
@@ -51,43 +55,44 @@ pub fn verify(
     })
 }
 
-/// Topology and intersections of a mesh by itself.
+/// Judges topology and intersections of a mesh by itself.
 ///
 /// # Errors
-/// [`VerifyError`]: a coordinate that is not finite or a vertex that does not exist.
-/// [`VerifyError::Cancelled`].
+/// - [`VerifyError::Mesh`]: a coordinate is not finite, or a vertex does not exist.
+/// - [`VerifyError::Cancelled`].
 pub fn soundness(mesh: &TriMesh, run: &RunSettings) -> Result<Soundness, VerifyError> {
     run.install(|| {
-        let welded = Welded::new(mesh, Which::Output)?;
+        let welded = Welded::new(mesh, MeshRole::Output)?;
         let topology = super::topology::topology(&welded);
         run.check()?;
         Ok(Soundness { topology, intersections: intersections_of(&welded, run)? })
     })
 }
 
-/// The topology of a mesh.
+/// Counts the defects of a mesh's topology.
 ///
 /// # Errors
 /// As [`soundness`].
 pub fn topology(mesh: &TriMesh, run: &RunSettings) -> Result<TopologyReport, VerifyError> {
-    run.install(|| Ok(super::topology::topology(&Welded::new(mesh, Which::Output)?)))
+    run.install(|| Ok(super::topology::topology(&Welded::new(mesh, MeshRole::Output)?)))
 }
 
-/// The intersecting pairs of triangles of a mesh.
+/// Finds the intersecting pairs of triangles of a mesh.
 ///
 /// # Errors
 /// As [`soundness`].
 pub fn intersections(mesh: &TriMesh, run: &RunSettings) -> Result<IntersectionReport, VerifyError> {
-    run.install(|| intersections_of(&Welded::new(mesh, Which::Output)?, run))
+    run.install(|| intersections_of(&Welded::new(mesh, MeshRole::Output)?, run))
 }
 
+/// Finds the intersecting pairs of a welded mesh.
 fn intersections_of(welded: &Welded, run: &RunSettings) -> Result<IntersectionReport, VerifyError> {
     let tree =
         BoxTree::new(&welded.mesh.vertices, &welded.mesh.triangles, welded.with_area().into_par_iter());
     Ok(super::intersections::intersections(welded, &tree, run)?)
 }
 
-/// Measures how far `output` is from the true offset surface of `input`.
+/// Measures the distance of `output` from the true offset surface of `input`.
 ///
 /// # Errors
 /// As [`verify`].
@@ -100,7 +105,8 @@ pub fn distance_error(
     on_case(input, output, settings, run, |case| Ok(super::distance_error::distance_error(case)?))
 }
 
-/// Measures how far the true offset surface of `input` is from `output`.
+/// Measures the distance of the true offset surface of `input` from `output`: what is missing
+/// there.
 ///
 /// # Errors
 /// As [`verify`].
@@ -113,7 +119,7 @@ pub fn missing(
     on_case(input, output, settings, run, |case| Ok(super::missing::missing(case)?))
 }
 
-/// Measures how much of the creases of the true offset surface of `input` is in `output`.
+/// Measures the share of the creases of `input`'s true offset surface that `output` has.
 ///
 /// # Errors
 /// As [`verify`].
@@ -126,7 +132,7 @@ pub fn creases(
     on_case(input, output, settings, run, |case| Ok(super::creases::creases(case)?))
 }
 
-/// Runs a part on both meshes, made ready, in the run's thread pool.
+/// Prepares both meshes and runs a part of the verification, in the run's thread pool.
 fn on_case<T: Send>(
     input: &TriMesh,
     output: &TriMesh,

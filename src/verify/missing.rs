@@ -1,8 +1,8 @@
 //! Distance of the true offset surface from OUTPUT: what is missing.
 //!
-//! Candidates are p + D n over faces, p + D m over the arcs and caps of normals m about edges and
-//! vertices. Those whose distance to INPUT is |D| are points of the true offset surface; the others
-//! lie in folds that an offset does not have.
+//! Candidates are p + D n over faces, and p + D m over the arcs and caps of normals m about edges
+//! and vertices. Candidates whose distance from INPUT is |D| are points of the true offset surface.
+//! The others lie in folds that an offset does not have.
 
 use super::case::{Case, weight};
 use super::input_edges::{Bend, BentEdge, bent_edges};
@@ -11,19 +11,20 @@ use super::sampling::{Draw, each, worst};
 use crate::run::Cancelled;
 use glam::DVec3;
 
-/// Parts of the samples that edges and vertices get: their arcs and caps are small beside the
-/// faces.
+/// Divisor of the number of samples, for edges: arcs are small beside the faces.
 const EDGE_PART: usize = 2;
+
+/// Divisor of the number of samples, for vertices: caps are small beside the faces.
 const VERTEX_PART: usize = 4;
 
-/// A point of the true offset surface, and its distance from OUTPUT.
+/// A point of the true offset surface, with its distance from OUTPUT in model units.
 #[derive(Clone, Copy)]
 struct Found {
     at: DVec3,
     distance: f64,
 }
 
-/// Distances from the true offset surface to OUTPUT.
+/// Measures distances of the true offset surface from OUTPUT.
 pub(super) fn missing(case: &Case) -> Result<MissingReport, Cancelled> {
     // Built here and not by the first sample, so that all threads take part.
     case.output_ssvh();
@@ -45,10 +46,11 @@ pub(super) fn missing(case: &Case) -> Result<MissingReport, Cancelled> {
     Ok(MissingReport { faces, edges, vertices, max, max_at, limit, share })
 }
 
-/// Triangles near the last sample: of INPUT and of OUTPUT.
+/// A triangle of INPUT and one of OUTPUT, near the last sample.
 type Guess = (u32, u32);
 
-/// The candidate `q` if it is on the true offset surface. `triangle` is at distance |D| from it.
+/// Returns the candidate `q` if it is on the true offset surface. `triangle` is at distance |D|
+/// from it.
 fn judge(case: &Case, q: DVec3, triangle: u32, (_, near): &mut Guess) -> Option<Found> {
     let mut closest = triangle;
     let distance = case.to_input(q, &mut closest);
@@ -56,6 +58,7 @@ fn judge(case: &Case, q: DVec3, triangle: u32, (_, near): &mut Guess) -> Option<
         .then(|| Found { at: q, distance: case.to_output(q, near) })
 }
 
+/// Samples the offsets of faces.
 fn of_faces(case: &Case) -> Result<Vec<Option<Found>>, Cancelled> {
     let ssvh = case.input();
     let order = &case.input_order;
@@ -69,6 +72,7 @@ fn of_faces(case: &Case) -> Result<Vec<Option<Found>>, Cancelled> {
     })
 }
 
+/// Samples the arcs about edges.
 fn of_edges(case: &Case) -> Result<Vec<Option<Found>>, Cancelled> {
     let edges = round_edges(case);
     let draw = Draw::new(edges.iter().map(|e| e.length() * e.angle));
@@ -84,9 +88,10 @@ fn of_edges(case: &Case) -> Result<Vec<Option<Found>>, Cancelled> {
     })
 }
 
+/// Samples the caps about vertices.
 fn of_vertices(case: &Case) -> Result<Vec<Option<Found>>, Cancelled> {
     let (mesh, topology) = (case.distance.mesh(), case.distance.topology());
-    // A vertex counts by how much the edges at it bend.
+    // The weight of a vertex is the sum of the angles of its edges.
     let mut bend = vec![0.0; mesh.vertices.len()];
     for edge in round_edges(case) {
         edge.vertices.iter().for_each(|&v| bend[v as usize] += edge.angle);
@@ -106,6 +111,7 @@ fn of_vertices(case: &Case) -> Result<Vec<Option<Found>>, Cancelled> {
     })
 }
 
+/// Returns the edges of INPUT about which the true offset surface is round.
 fn round_edges(case: &Case) -> Vec<BentEdge> {
     if case.r == 0.0 {
         return Vec::new();

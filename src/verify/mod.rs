@@ -1,11 +1,11 @@
-//! The judge: tells whether a mesh is the offset surface that it is said to be.
+//! The judge: whether a mesh is the offset surface that it is said to be.
 //!
 //! ```text
 //!  OUTPUT -> weld -> topology
 //!                 -> box tree -> intersections
-//!  INPUT, OUTPUT  -> distance    how far OUTPUT is from the true offset surface
-//!                 -> missing     how far the true offset surface is from OUTPUT
-//!                 -> creases     what OUTPUT has of the true offset surface's creases
+//!  INPUT, OUTPUT  -> distance    from OUTPUT to the true offset surface
+//!                 -> missing     distance from the true offset surface to OUTPUT
+//!                 -> creases     the share of the true offset surface's creases that OUTPUT has
 //!                 -> shell       the wall between two sheets
 //!  all            -> report      and the promises that are broken
 //! ```
@@ -32,11 +32,11 @@ pub(crate) mod tests;
 mod topology;
 mod welded;
 
-pub use error::{VerifyError, Which};
+pub use error::{MeshRole, VerifyError};
 pub use judge::{creases, distance_error, intersections, missing, soundness, topology, verify};
 pub use report::{
-    Broken, CreaseReport, DistanceReport, Histogram, IntersectingPair, IntersectionReport, Judged,
+    BrokenPromise, CreaseReport, DistanceReport, Histogram, IntersectingPair, IntersectionReport, Judged,
     MissingReport, Promise, ReportedLength, ShellReport, Soundness, Statistics, Thickness, TopologyReport,
     VerifyReport,
 };
-pub use settings::{DEFAULT_SAMPLES, DEFAULT_SEED, MOST_SAMPLES, Subject, VerifySettings};
+pub use settings::{DEFAULT_SAMPLES, DEFAULT_SEED, MAX_SAMPLES, Subject, VerifySettings};

@@ -1,13 +1,13 @@
-//! Promises that OUTPUT breaks.
+//! The promises that OUTPUT breaks.
 
 use super::report::{
-    Broken, DistanceReport, IntersectionReport, MissingReport, Promise, ShellReport, Soundness,
+    BrokenPromise, DistanceReport, IntersectionReport, MissingReport, Promise, ShellReport, Soundness,
     TopologyReport,
 };
 
 impl Soundness {
-    /// The promises that the mesh breaks by itself, whatever it is the offset of.
-    pub fn broken(&self) -> Vec<Broken> {
+    /// Returns the promises that the mesh breaks by itself, whatever it is the offset of.
+    pub fn broken(&self) -> Vec<BrokenPromise> {
         let TopologyReport {
             border_edges,
             non_manifold_edges,
@@ -26,7 +26,7 @@ impl Soundness {
             (Promise::NoIntersections, pairs, "intersecting pair of triangles"),
         ];
         let broken = counts.into_iter().filter(|&(_, count, _)| count > 0);
-        broken.map(|(promise, count, what)| Broken { promise, how: counted(count, what) }).collect()
+        broken.map(|(promise, count, what)| BrokenPromise { promise, how: counted(count, what) }).collect()
     }
 
     /// Whether the mesh is closed, 2-manifold, oriented, and free of degenerate and intersecting
@@ -36,6 +36,7 @@ impl Soundness {
     }
 }
 
+/// Returns a count with its noun in the right number.
 fn counted(count: u64, what: &str) -> String {
     match (count, what.split_once(' ')) {
         (1, _) => format!("1 {what}"),
@@ -46,22 +47,26 @@ fn counted(count: u64, what: &str) -> String {
     }
 }
 
-/// Errors above the tolerance, either way.
-pub(super) fn of_errors(distance: &DistanceReport, missing: &MissingReport, tolerance: f64) -> Vec<Broken> {
+/// Returns the errors above the tolerance, either way.
+pub(super) fn of_errors(
+    distance: &DistanceReport,
+    missing: &MissingReport,
+    tolerance: f64,
+) -> Vec<BrokenPromise> {
     let errors = [
         (distance.max.units, "OUTPUT is off by up to"),
         (missing.max.units, "parts of the true offset surface are missing, up to"),
     ];
     let above = errors.into_iter().filter(|&(error, _)| error > tolerance);
-    let describe = |(error, what)| Broken {
+    let describe = |(error, what)| BrokenPromise {
         promise: Promise::Tolerance,
         how: format!("{what} {error:.6e}, above {tolerance:.6e}"),
     };
     above.map(describe).collect()
 }
 
-/// A wall that is not there, or too thin.
-pub(super) fn of_shell(shell: &ShellReport, tolerance: Option<f64>) -> Option<Broken> {
+/// Returns the fault of a wall that is not there, or too thin.
+pub(super) fn of_shell(shell: &ShellReport, tolerance: Option<f64>) -> Option<BrokenPromise> {
     let how = match (shell.thickness, tolerance) {
         (None, _) => {
             let missing = if shell.offset_triangles == 0 { "the offset" } else { "INPUT's surface" };
@@ -72,5 +77,5 @@ pub(super) fn of_shell(shell: &ShellReport, tolerance: Option<f64>) -> Option<Br
         }
         _ => return None,
     };
-    Some(Broken { promise: Promise::Thickness, how })
+    Some(BrokenPromise { promise: Promise::Thickness, how })
 }

@@ -1,13 +1,14 @@
-//! Report of a verification. Lengths are in model units unless a name says otherwise; vertex and
-//! triangle numbers are those of the file. Everything is serialisable; the field names are those of
-//! the JSON file.
+//! The report of a verification.
+//!
+//! Lengths are in model units unless a name says otherwise. Vertex and triangle numbers are those
+//! of the file. All types can be serialised; the names of the fields are those of the JSON file.
 
 use serde::Serialize;
 
-/// Everything that [`verify`](super::verify) found.
+/// Report of [`verify`](super::verify).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct VerifyReport {
-    /// Against what was judged.
+    /// The case that OUTPUT was judged by.
     pub judged: Judged,
     /// Topology and intersections of OUTPUT by itself.
     #[serde(flatten)]
@@ -18,10 +19,10 @@ pub struct VerifyReport {
     pub missing: MissingReport,
     /// Share of the true offset surface's creases that OUTPUT has.
     pub creases: CreaseReport,
-    /// The wall, when it was asked for.
+    /// The wall, if OUTPUT is a shell.
     pub shell: Option<ShellReport>,
     /// The promises that OUTPUT breaks; empty when it keeps all.
-    pub broken: Vec<Broken>,
+    pub broken: Vec<BrokenPromise>,
 }
 
 impl VerifyReport {
@@ -31,31 +32,31 @@ impl VerifyReport {
     }
 }
 
-/// Offset and samples that OUTPUT was judged by.
+/// The case that OUTPUT was judged by.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Judged {
-    /// Signed offset distance.
+    /// Signed offset distance, in model units.
     pub distance: f64,
-    /// Diagonal of INPUT's bounding box.
+    /// Diagonal of INPUT's bounding box, in model units.
     pub diagonal: f64,
-    /// Voxel size, if given.
+    /// Voxel size in model units, if given.
     pub voxel: Option<f64>,
-    /// The largest error allowed, if given.
+    /// Maximum error allowed in model units, if given.
     pub tolerance: Option<f64>,
-    /// Area-uniform samples asked for.
+    /// Number of area-uniform samples asked for.
     pub samples: usize,
     /// The seed of the samples.
     pub seed: u64,
 }
 
-/// A length, in the three units in which offsets are compared.
+/// A length in the three units in which offsets are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ReportedLength {
-    /// In model units.
+    /// The length in model units.
     pub units: f64,
-    /// In percent of the diagonal of INPUT's bounding box.
+    /// The length in percent of the diagonal of INPUT's bounding box.
     pub percent_of_diagonal: f64,
-    /// In voxels, if the voxel size is known.
+    /// The length in voxels, if the voxel size is known.
     pub voxels: Option<f64>,
 }
 
@@ -70,22 +71,23 @@ pub struct Statistics {
     pub rms: ReportedLength,
     /// The error that 99.9 percent of the samples do not exceed.
     pub p999: ReportedLength,
-    /// The largest.
+    /// Maximum.
     pub max: ReportedLength,
-    /// The sample with the largest error (the first of several).
+    /// Position of the first sample with the largest error.
     pub max_at: Option<[f64; 3]>,
 }
 
 /// Topology and intersections.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Soundness {
-    /// Topology: how triangles, edges and vertices hang together.
+    /// Defects of edges, vertices and triangles.
     pub topology: TopologyReport,
-    /// Triangles that meet where they should not.
+    /// Pairs of triangles that meet where they should not.
     pub intersections: IntersectionReport,
 }
 
-/// Topology after vertices at exactly the same position were made one. Nothing else is repaired.
+/// Topology of a mesh whose vertices at exactly the same position were made one. Nothing else is
+/// repaired.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TopologyReport {
     /// Vertices that a triangle uses, after welding.
@@ -107,19 +109,20 @@ pub struct TopologyReport {
     /// Vertices whose triangles form more than one fan.
     pub non_manifold_vertices: usize,
     /// Triangles without area: with two corners at one position, or all three exactly on a line.
-    /// The former have no part in edges and fans.
+    /// Triangles of the first kind have no part in edges and fans.
     pub degenerate_triangles: usize,
     /// Triangles with the same three corners as an earlier one, whichever way round.
     pub duplicate_triangles: usize,
     /// Sets of triangles joined by edges.
     pub components: usize,
-    /// Vertices - edges + triangles, without those that have two corners at one position.
+    /// Euler number: vertices - edges + triangles, without triangles that have two corners at one
+    /// position.
     pub euler: i64,
-    /// The sum of the genera of all components; `None` unless closed, 2-manifold and oriented.
+    /// Sum of the genera of all components; `None` unless closed, 2-manifold and oriented.
     pub genus: Option<i64>,
-    /// The smallest angle of a triangle with area, in degrees.
+    /// Smallest angle of a triangle with area, in degrees.
     pub smallest_angle: Option<f64>,
-    /// The triangle that has it.
+    /// The triangle with the smallest angle.
     pub smallest_angle_triangle: Option<u32>,
     /// Triangles with area and an angle below one degree.
     pub slivers: usize,
@@ -137,51 +140,54 @@ pub struct TopologyReport {
     pub first_duplicate: Option<u32>,
 }
 
-/// Pairs of triangles that have more in common than the vertices and edges they share. Degenerate
-/// triangles have no part in it.
+/// Pairs of triangles that have more in common than the vertices and edges they share, without
+/// degenerate triangles.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct IntersectionReport {
-    /// The number of pairs.
+    /// Number of intersecting pairs.
     pub pairs: u64,
-    /// The number of pairs with overlapping boxes; all were tested.
+    /// Number of pairs with overlapping boxes; all of these were tested.
     pub tested: u64,
-    /// The first pairs, in ascending order.
+    /// The first intersecting pairs, in ascending order.
     pub first: Vec<IntersectingPair>,
 }
 
 /// Two triangles that intersect.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct IntersectingPair {
-    /// The triangles' numbers, ascending.
+    /// Numbers of the triangles, ascending.
     pub triangles: [u32; 2],
-    /// A point of both, up to rounding.
+    /// A point of both triangles, up to rounding.
     pub point: [f64; 3],
 }
 
-/// | |dis(p, INPUT)| - |D| | over points p of OUTPUT. For a shell, points of the sheet at INPUT's
-/// own surface are judged against distance 0, and those of walls between the sheets are left out.
+/// Error | |dis(p, INPUT)| - |D| | over points p of OUTPUT.
+///
+/// For a shell, points of the sheet at INPUT's own surface are judged against distance 0, and
+/// points of walls between the sheets are left out.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DistanceReport {
-    /// Points uniform over OUTPUT's area.
+    /// Error at points uniform over OUTPUT's area.
     pub surface: Statistics,
-    /// Vertices: all, or four times as many as there are samples, evenly chosen.
+    /// Error at vertices: all, or four times as many as there are samples, evenly chosen.
     pub vertices: Statistics,
-    /// The midpoints of edges: all, or four times as many as there are samples, evenly chosen.
+    /// Error at midpoints of edges: all, or four times as many as there are samples, evenly chosen.
     pub edge_midpoints: Statistics,
-    /// The largest error of all.
+    /// Maximum of all errors.
     pub max: ReportedLength,
-    /// Position of the largest.
+    /// Position of the maximum.
     pub max_at: Option<[f64; 3]>,
-    /// The share of the surface samples on the wrong side of INPUT, 0 to 1; `None` if INPUT is not
+    /// Share of the surface samples on the wrong side of INPUT, 0 to 1; `None` if INPUT is not
     /// closed. Samples nearer to INPUT than |D| / 2 are not counted.
     pub wrong_side: Option<f64>,
-    /// The errors of the surface samples by size.
+    /// Errors of the surface samples by size.
     pub histogram: Histogram,
 }
 
-/// Counts by the logarithm of the error, for charts. Bin i counts errors from 10^(first + i /
-/// per_decade) to the next, as a part of the diagonal; the first bin also those below, the last
-/// also those above.
+/// Counts by the logarithm of the error, for charts.
+///
+/// Bin i counts errors from 10^(first + i / per_decade) to the next bin's, as a share of the
+/// diagonal. The first bin also counts smaller ones, the last also larger ones.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Histogram {
     /// Power of ten at which the first bin begins.
@@ -195,73 +201,77 @@ pub struct Histogram {
 /// Distances from points of the true offset surface to OUTPUT.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MissingReport {
-    /// From points of the true offset of faces, uniform over INPUT's area.
+    /// Distance from the offsets of faces, uniform over INPUT's area.
     pub faces: Statistics,
-    /// From the arcs about edges: convex ones when growing, concave ones when shrinking.
+    /// Distance from the arcs about edges: convex ones when growing, concave ones when shrinking.
     pub edges: Statistics,
-    /// From the caps about vertices.
+    /// Distance from the caps about vertices.
     pub vertices: Statistics,
-    /// The largest distance of all.
+    /// Maximum of all distances.
     pub max: ReportedLength,
-    /// Position of the largest.
+    /// Position of the maximum.
     pub max_at: Option<[f64; 3]>,
-    /// A point farther from OUTPUT than this counts as missing: the tolerance if given, otherwise
-    /// half a voxel, otherwise `None`.
+    /// Distance from OUTPUT, in model units, above which a point is missing: the tolerance if
+    /// given, otherwise half a voxel, otherwise `None`.
     pub limit: Option<f64>,
-    /// The share of all points that are missing, 0 to 1; `None` without a limit.
+    /// Share of all points that are missing, 0 to 1; `None` without a limit.
     pub share: Option<f64>,
 }
 
-/// Creases of the true offset surface: points with two closest points of INPUT, traced from INPUT's
-/// concave edges when growing and from its convex ones when shrinking.
+/// Creases of the true offset surface: points with two closest points of INPUT. Creases are traced
+/// from INPUT's concave edges when growing and from its convex ones when shrinking.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct CreaseReport {
-    /// Edges of INPUT that creases were traced from: sharper than the crease angle.
+    /// Number of edges of INPUT that creases were traced from: sharper than the crease angle.
     pub input_edges: usize,
-    /// Length of the creases.
+    /// Length of the creases, in model units.
     pub length: f64,
-    /// Length along which OUTPUT has an edge, within `within` and nearly parallel.
+    /// Length along which OUTPUT has an edge, at most `within` away and nearly parallel; in model
+    /// units.
     pub present: f64,
-    /// `present / length`; `None` without creases.
+    /// Share `present / length`, 0 to 1; `None` without creases.
     pub share: Option<f64>,
-    /// Maximum distance of an edge that counts: 5% of a voxel.
+    /// Maximum distance of an edge from the crease, in model units: 5% of a voxel.
     pub within: f64,
-    /// The first point of a crease that OUTPUT has no edge along.
+    /// First point of a crease that OUTPUT has no edge along.
     pub first_absent: Option<[f64; 3]>,
 }
 
-/// The wall of a shell: OUTPUT consists of a sheet at INPUT's own surface and one at distance |D|,
-/// perhaps with walls between them. A triangle belongs to the sheet at |D| when all its corners are
-/// farther from INPUT than |D| / 2, to the one at INPUT when none is, and to a wall otherwise. The
-/// thickness at a point of the sheet at |D| is its distance to the other sheet.
+/// The wall of a shell.
+///
+/// A shell consists of a sheet at INPUT's own surface and one at distance |D|, perhaps with walls
+/// between them. A triangle belongs to the sheet at |D| when all its corners are farther from INPUT
+/// than |D| / 2, to the one at INPUT when none is, and to a wall otherwise. The thickness at a
+/// point of the sheet at |D| is the point's distance from the other sheet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ShellReport {
-    /// The thickness that was asked for.
+    /// Thickness that was asked for, in model units.
     pub wanted: f64,
-    /// Triangles of the sheet at INPUT's surface.
+    /// Number of triangles of the sheet at INPUT's surface.
     pub surface_triangles: usize,
-    /// Triangles of the sheet at |D|.
+    /// Number of triangles of the sheet at |D|.
     pub offset_triangles: usize,
-    /// Triangles of walls between the sheets.
+    /// Number of triangles of walls between the sheets.
     pub wall_triangles: usize,
-    /// The thickness; `None` unless both sheets are there.
+    /// Thickness of the wall; `None` unless both sheets are there.
     pub thickness: Option<Thickness>,
 }
 
-/// Thickness of a wall over samples uniform over the area of the sheet at |D|, and its vertices.
+/// Thickness of a wall, over samples uniform over the area of the sheet at |D| and over its
+/// vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Thickness {
     /// Number of samples.
     pub samples: usize,
-    /// The smallest.
+    /// Minimum.
     pub min: ReportedLength,
     /// Mean.
     pub mean: ReportedLength,
-    /// The largest.
+    /// Maximum.
     pub max: ReportedLength,
-    /// Position at which the wall is thinnest.
+    /// Position of the minimum.
     pub min_at: [f64; 3],
-    /// Position at which the wall is thickest.
+    /// Position of the maximum.
     pub max_at: [f64; 3],
 }
 
@@ -287,9 +297,9 @@ pub enum Promise {
 
 /// A promise that OUTPUT breaks.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Broken {
+pub struct BrokenPromise {
     /// The promise.
     pub promise: Promise,
-    /// Description of the breach, in a few words.
+    /// The fault, in a few words.
     pub how: String,
 }

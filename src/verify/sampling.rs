@@ -5,11 +5,12 @@ use crate::run::{Cancelled, RunSettings};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Samples that one task evaluates one after the other, each starting from what the last one found.
-/// Fewer: the first of a task, which starts from nothing, counts; more: cancelling takes longer.
-const TASK: usize = 2048;
+/// Number of samples that a task evaluates one after the other, each from the last one's result.
+/// Fewer, and the first of a task, which starts from nothing, costs too much. More, and cancelling
+/// takes longer.
+const SAMPLES_PER_TASK: usize = 2048;
 
-/// Random numbers that depend on nothing but the seed and what they are for.
+/// Source of random numbers that depend on the seed and their purpose alone.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Random {
     seed: u64,
@@ -20,7 +21,7 @@ impl Random {
         Random { seed }
     }
 
-    /// Number `k` for item `i`, uniform in [0, 1): splitmix64 (Steele et al. 2014).
+    /// Returns number `k` for item `i`, uniform in [0, 1): splitmix64 (Steele et al. 2014).
     pub fn uniform(&self, i: usize, k: u64) -> f64 {
         let mix = |x: u64| {
             let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -32,7 +33,7 @@ impl Random {
         (mix(key.wrapping_add(GOLDEN)) >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// A point uniform over a triangle's area.
+    /// Returns a point, uniform over the area of a triangle.
     pub fn on_triangle(&self, i: usize, [a, b, c]: [DVec3; 3]) -> DVec3 {
         let (mut u, mut v) = (self.uniform(i, 1), self.uniform(i, 2));
         if u + v > 1.0 {
@@ -42,8 +43,9 @@ impl Random {
     }
 }
 
-/// Items drawn in proportion to their weights, one from each of equal parts of the total weight: so
-/// the draw is uniform and even at once, and neighbours in the list are neighbours in the draw.
+/// A draw of items in proportion to their weights, one from each of equal parts of the total
+/// weight. So the draw is uniform and even at once, and neighbours in the list are neighbours in
+/// the draw.
 #[derive(Debug)]
 pub(super) struct Draw {
     /// Sums of the weights up to each item.
@@ -51,6 +53,7 @@ pub(super) struct Draw {
 }
 
 impl Draw {
+    /// Prepares a draw of items with these weights.
     pub fn new(weights: impl IntoIterator<Item = f64>) -> Self {
         let mut sum = 0.0;
         let sums = weights.into_iter().map(|w| {
@@ -60,17 +63,17 @@ impl Draw {
         Draw { sums: sums.collect() }
     }
 
-    /// The total weight.
+    /// Returns the total weight.
     pub fn total(&self) -> f64 {
         self.sums.last().copied().unwrap_or(0.0)
     }
 
-    /// Returns the number of samples that can be drawn of `wanted`: none without weight.
+    /// Returns the number of samples that can be drawn: `wanted`, or none without weight.
     pub fn available(&self, wanted: usize) -> usize {
         if self.total() > 0.0 { wanted } else { 0 }
     }
 
-    /// Item of sample `i` of `count`.
+    /// Returns the item of sample `i` of `count`.
     pub fn item(&self, i: usize, count: usize, random: Random) -> usize {
         let at = (i as f64 + random.uniform(i, 0)) / count as f64 * self.total();
         // Rounding may reach the total.
@@ -78,8 +81,8 @@ impl Draw {
     }
 }
 
-/// `evaluate` for samples 0 to `count`, in order; each is given what the one before it left as a
-/// guess. The guess must not change a result.
+/// Evaluates samples 0 to `count`, in parallel, and returns the results in order. Each sample gets
+/// the guess that the one before it left; the guess must not change a result.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -88,19 +91,19 @@ pub(super) fn each<T: Send, G: Default>(
     run: &RunSettings,
     evaluate: impl Fn(usize, &mut G) -> T + Sync,
 ) -> Result<Vec<T>, Cancelled> {
-    let tasks: Vec<Vec<T>> = (0..count.div_ceil(TASK))
+    let tasks: Vec<Vec<T>> = (0..count.div_ceil(SAMPLES_PER_TASK))
         .into_par_iter()
         .map(|task| {
             run.check()?;
             let mut guess = G::default();
-            let range = task * TASK..((task + 1) * TASK).min(count);
+            let range = task * SAMPLES_PER_TASK..((task + 1) * SAMPLES_PER_TASK).min(count);
             Ok(range.map(|i| evaluate(i, &mut guess)).collect())
         })
         .collect::<Result<_, Cancelled>>()?;
     Ok(tasks.into_iter().flatten().collect())
 }
 
-/// The units of a report.
+/// The units of a report, in model units.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scale {
     pub diagonal: f64,
@@ -108,16 +111,17 @@ pub(super) struct Scale {
 }
 
 impl Scale {
+    /// Returns a length in model units in the three units of a report.
     pub fn length(&self, units: f64) -> ReportedLength {
         let percent_of_diagonal = 100.0 * units / self.diagonal;
         ReportedLength { units, percent_of_diagonal, voxels: self.voxel.map(|h| units / h) }
     }
 
-    /// Statistics of errors; `at` tells where sample i is.
+    /// Returns the statistics of errors. `at` gives the position of sample i.
     pub fn statistics(&self, mut errors: Vec<f64>, at: impl Fn(usize) -> DVec3) -> Statistics {
         let samples = errors.len();
         let Some((worst, max)) = largest(&errors) else { return Statistics::default() };
-        // One after the other: the sum must not depend on the threads.
+        // One after the other, so that the sum does not depend on the threads.
         let (sum, squares) = errors.iter().fold((0.0, 0.0), |(s, q), e| (s + e, q + e * e));
         let rank = ((0.999 * samples as f64).ceil() as usize).clamp(1, samples) - 1;
         let p999 = *errors.select_nth_unstable_by(rank, f64::total_cmp).1;
@@ -132,13 +136,13 @@ impl Scale {
     }
 }
 
-/// The first of the largest, and it.
+/// Returns the index of the first largest error, and the error.
 pub(super) fn largest(errors: &[f64]) -> Option<(usize, f64)> {
     let max = errors.iter().copied().reduce(f64::max)?;
     errors.iter().position(|&e| e == max).map(|i| (i, max))
 }
 
-/// The one with the largest error.
+/// Returns the largest error of several statistics, with its position.
 pub(super) fn worst(all: &[&Statistics]) -> (ReportedLength, Option<[f64; 3]>) {
     let largest = all.iter().copied().reduce(|a, b| if b.max.units > a.max.units { b } else { a });
     largest.map_or((ReportedLength::default(), None), |s| (s.max, s.max_at))

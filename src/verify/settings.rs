@@ -3,40 +3,40 @@
 use super::error::VerifyError;
 use crate::quantity::Length;
 
-/// The seed when none is given; any would do.
+/// Default seed; any would do.
 pub const DEFAULT_SEED: u64 = 1;
 
-/// Area-uniform samples when no number is given: the mean of an error is then known to about 0.3%
-/// of its spread. Ten times as many would take most of the time.
+/// Default number of area-uniform samples. The mean of an error is then known to about 0.3% of its
+/// spread; ten times as many would take most of the time.
 pub const DEFAULT_SAMPLES: usize = 200_000;
 
-/// The most samples: they take about 90 bytes each, and the mean of an error is known to 0.03% of
-/// its spread.
-pub const MOST_SAMPLES: usize = 20_000_000;
+/// Maximum number of samples. They take about 90 bytes each, and the mean of an error is known to
+/// 0.03% of its spread.
+pub const MAX_SAMPLES: usize = 20_000_000;
 
-/// Settings that OUTPUT is judged by.
+/// Settings of [`verify`](super::verify).
 #[derive(Clone, Debug, PartialEq)]
 pub struct VerifySettings {
-    /// The signed distance that OUTPUT is said to be at: positive grown, negative shrunk.
+    /// Signed distance that OUTPUT is said to be at: positive grown, negative shrunk.
     pub distance: Length,
-    /// Voxel size in model units, for errors in voxels. Without it the limits for creases are taken
+    /// Voxel size in model units, for errors in voxels. Without it the limits for creases follow
     /// from the mean size of OUTPUT's triangles.
     pub voxel: Option<f64>,
-    /// The largest error allowed in model units, either way; `None` promises nothing about
-    /// distances.
+    /// Maximum error allowed, either way, in model units; `None` promises nothing about distances.
     pub tolerance: Option<f64>,
-    /// Area-uniform samples on OUTPUT, and on INPUT for what is missing: 1 to [`MOST_SAMPLES`].
+    /// Number of area-uniform samples on OUTPUT, and on INPUT for what is missing: 1 to
+    /// [`MAX_SAMPLES`].
     pub samples: usize,
-    /// Seed of the samples. The same seed gives the same report, for every number of threads.
+    /// Seed of the samples. Equal seeds give equal reports, for every number of threads.
     pub seed: u64,
-    /// Creases are traced from edges of INPUT whose triangles' normals differ by more than this, in
-    /// degrees.
+    /// Angle in degrees, between 0 and 180, above which an edge of INPUT is sharp. Creases are
+    /// traced from edges whose triangles' normals differ by more.
     pub crease_angle: f64,
-    /// Kind of OUTPUT.
+    /// The kind of OUTPUT.
     pub subject: Subject,
 }
 
-/// Kind of a mesh that is judged.
+/// The kind of OUTPUT.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Subject {
     /// The offset surface alone.
@@ -44,7 +44,7 @@ pub enum Subject {
     Offset,
     /// A shell: INPUT's own surface and the offset surface, with the material between them.
     Shell {
-        /// The wall thickness wanted, in model units; `None` for |D|.
+        /// Wall thickness wanted, in model units; `None` for |D|.
         thickness: Option<f64>,
     },
 }
@@ -63,12 +63,12 @@ impl Default for VerifySettings {
     }
 }
 
-/// The usual limit between a crease and a curved surface's facets. Smaller, and coarse spheres are
-/// full of creases; larger, and chamfers lose theirs.
+/// Default crease angle in degrees: the usual limit between a crease and the facets of a curved
+/// surface. Smaller, and coarse spheres are full of creases; larger, and chamfers lose theirs.
 const DEFAULT_CREASE_ANGLE: f64 = 30.0;
 
 impl VerifySettings {
-    /// Checks everything that does not need the meshes.
+    /// Checks the settings, as far as that needs no mesh.
     ///
     /// # Errors
     /// [`VerifyError::Setting`]: the first setting out of range.
@@ -90,7 +90,7 @@ impl VerifySettings {
         }
         let angle = self.crease_angle;
         check(angle > 0.0 && angle < 180.0, "crease angle", "between 0 and 180 degrees", angle)?;
-        let in_range = (1..=MOST_SAMPLES).contains(&self.samples);
+        let in_range = (1..=MAX_SAMPLES).contains(&self.samples);
         check(in_range, "number of samples", "1 to 20 million", self.samples as f64)
     }
 }

@@ -9,7 +9,7 @@ use crate::run::Cancelled;
 use crate::ssvh::Ssvh;
 use glam::DVec3;
 
-/// The part of OUTPUT that a triangle belongs to.
+/// The part of a shell that a triangle belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
     Surface,
@@ -17,7 +17,7 @@ enum Part {
     Wall,
 }
 
-/// The wall, if OUTPUT is a shell.
+/// Measures the wall, if OUTPUT is a shell.
 pub(super) fn shell(case: &Case) -> Result<Option<ShellReport>, Cancelled> {
     let Subject::Shell { thickness } = case.settings.subject else { return Ok(None) };
     let mesh = &case.output.mesh;
@@ -41,7 +41,7 @@ pub(super) fn shell(case: &Case) -> Result<Option<ShellReport>, Cancelled> {
     }))
 }
 
-/// Distances from the offset sheet to the sheet at the surface.
+/// Measures the distances from the offset sheet to the sheet at the surface.
 fn measure(case: &Case, surface: &[u32], offset: &[u32]) -> Result<Option<Thickness>, Cancelled> {
     if surface.is_empty() || offset.is_empty() {
         return Ok(None);
@@ -67,7 +67,7 @@ fn measure(case: &Case, surface: &[u32], offset: &[u32]) -> Result<Option<Thickn
     let (Some((thinnest, min)), Some((thickest, max))) = (largest(&negative), largest(&thickness)) else {
         return Ok(None);
     };
-    // The corners are more where triangles are small; the mean is that of the area.
+    // Corners are denser where triangles are small, so the mean is that of the samples alone.
     let mean = thickness[..drawn].iter().sum::<f64>() / drawn.max(1) as f64;
     Ok(Some(Thickness {
         samples: count,

@@ -1,4 +1,4 @@
-//! Topology: how triangles, edges and vertices hang together.
+//! Topology of OUTPUT: the defects of its edges, vertices and triangles.
 
 use super::report::TopologyReport;
 use super::welded::Welded;
@@ -7,11 +7,10 @@ use crate::mesh::TriMesh;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// A triangle with an angle below this, in degrees, is a sliver: its normal has lost about two
-/// digits.
+/// Angle in degrees below which a triangle is a sliver: its normal has lost about two digits.
 const SLIVER: f64 = 1.0;
 
-/// The topology of a welded mesh. Runs on the current rayon pool.
+/// Counts the defects of a welded mesh. Runs on the current rayon pool.
 pub(super) fn topology(welded: &Welded) -> TopologyReport {
     let mesh = &welded.mesh;
     let mut report = TopologyReport {
@@ -45,12 +44,13 @@ pub(super) fn topology(welded: &Welded) -> TopologyReport {
     report
 }
 
+/// Counts the vertices that a triangle uses.
 fn used_vertices(welded: &Welded) -> usize {
     let vertices = 0..welded.mesh.vertices.len() as u32;
     vertices.into_par_iter().filter(|&v| !welded.topology.around_vertex(v).is_empty()).count()
 }
 
-/// The undirected edges of a mesh, each once, by the triangle and side that come first.
+/// Returns the undirected edges of a mesh, each once, by the first triangle and side.
 pub(super) fn edges(welded: &Welded) -> impl ParallelIterator<Item = (u32, Side)> + '_ {
     (0..welded.mesh.triangles.len() as u32).into_par_iter().flat_map_iter(move |t| {
         let is_first =
@@ -59,12 +59,13 @@ pub(super) fn edges(welded: &Welded) -> impl ParallelIterator<Item = (u32, Side)
     })
 }
 
-/// The ends of a directed edge.
+/// Returns the ends of a directed edge.
 pub(super) fn ends(mesh: &TriMesh, t: u32, side: Side) -> [u32; 2] {
     let triangle = mesh.triangles[t as usize];
     [triangle[side.index()], triangle[side.next().index()]]
 }
 
+/// Counts edges and their defects.
 fn count_edges(welded: &Welded, report: &mut TopologyReport) {
     let mesh = &welded.mesh;
     report.edges = edges(welded).count();
@@ -88,6 +89,7 @@ fn count_edges(welded: &Welded, report: &mut TopologyReport) {
     }
 }
 
+/// Counts vertices with several fans.
 fn count_fans(welded: &Welded, report: &mut TopologyReport) {
     let vertices = 0..welded.mesh.vertices.len() as u32;
     let has_several = |fan: &mut Fan, v| (!fan.is_whole(welded, v)).then_some(v);
@@ -96,11 +98,12 @@ fn count_fans(welded: &Welded, report: &mut TopologyReport) {
     report.first_non_manifold_vertex = bad.first().map(|&v| welded.mesh.vertices[v as usize]);
 }
 
-/// A walk around a vertex; scratch.
+/// Scratch space of a walk around a vertex.
 #[derive(Default)]
 struct Fan {
-    /// Places in the list of the vertex's triangles that were reached, and which they are.
+    /// Per triangle of the vertex, whether the walk has reached it.
     reached: Vec<bool>,
+    /// Triangles that were reached and whose neighbours were not looked at.
     waiting: Vec<u32>,
 }
 
@@ -121,8 +124,8 @@ impl Fan {
                     continue;
                 }
                 for (other, _) in welded.topology.around_edge(t, side) {
-                    let place = around.binary_search(&other).expect("a triangle at an edge is at its ends");
-                    if !std::mem::replace(&mut self.reached[place], true) {
+                    let slot = around.binary_search(&other).expect("a triangle at an edge is at its ends");
+                    if !std::mem::replace(&mut self.reached[slot], true) {
                         self.waiting.push(other);
                     }
                 }
@@ -132,6 +135,7 @@ impl Fan {
     }
 }
 
+/// Finds slivers and the smallest angle.
 fn measure_angles(welded: &Welded, report: &mut TopologyReport) {
     let with_area = |&t: &u32| welded.flat.binary_search(&t).is_err();
     let angles = (0..welded.mesh.triangles.len() as u32)
@@ -149,7 +153,7 @@ fn measure_angles(welded: &Welded, report: &mut TopologyReport) {
     }
 }
 
-/// In degrees.
+/// Returns the smallest angle of a triangle, in degrees.
 fn smallest_angle(corners: [[f64; 3]; 3]) -> f64 {
     let [a, b, c] = corners.map(DVec3::from);
     // Far from pi the arc tangent keeps its digits near 0, where the arc cosine loses them.
@@ -157,6 +161,7 @@ fn smallest_angle(corners: [[f64; 3]; 3]) -> f64 {
     angle(b - a, c - a).min(angle(c - b, a - b)).min(angle(a - c, b - c)).to_degrees()
 }
 
+/// Counts triangles with the corners of an earlier one.
 fn count_duplicates(welded: &Welded, report: &mut TopologyReport) {
     // Duplicates have an edge in common, with more than two triangles or two that are the same.
     let sorted = |t: u32| {

@@ -1,6 +1,7 @@
-//! OUTPUT with equal positions made one vertex, and what that left without shape set aside.
+//! OUTPUT after welding: equal positions are one vertex, and triangles that collapsed are set
+//! aside.
 
-use super::error::{VerifyError, Which};
+use super::error::{MeshRole, VerifyError};
 use crate::geom::predicates::projection_axis;
 use crate::mesh::{CleanReport, Topology, TriMesh, weld};
 use rayon::prelude::*;
@@ -11,9 +12,9 @@ use rayon::prelude::*;
 pub(super) struct Welded {
     pub mesh: TriMesh,
     pub topology: Topology,
-    /// Report of the welding.
+    /// Counts of the welding.
     pub report: CleanReport,
-    /// Triangles of the file with two corners at one position, ascending. They are not in `mesh`.
+    /// Triangles of the file with two corners at one position, ascending; not in `mesh`.
     pub collapsed: Vec<u32>,
     /// Triangles of `mesh` whose corners are exactly on a line, ascending.
     pub flat: Vec<u32>,
@@ -24,7 +25,7 @@ impl Welded {
     ///
     /// # Errors
     /// [`VerifyError::Mesh`].
-    pub fn new(mesh: &TriMesh, which: Which) -> Result<Self, VerifyError> {
+    pub fn new(mesh: &TriMesh, which: MeshRole) -> Result<Self, VerifyError> {
         check(mesh, which)?;
         let (mut mesh, report) = weld(mesh.clone());
         let is_collapsed = |[a, b, c]: [u32; 3]| a == b || b == c || c == a;
@@ -41,20 +42,20 @@ impl Welded {
         Ok(Welded { mesh, topology, report, collapsed, flat })
     }
 
-    /// The number that triangle `t` of `mesh` has in the file.
+    /// Returns the number in the file of triangle `t` of `mesh`.
     pub fn in_file(&self, t: u32) -> u32 {
-        // Each collapsed triangle before it moves it on; few meshes have any.
+        // Each collapsed triangle before it shifts the number; few meshes have any.
         self.collapsed.iter().fold(t, |number, &collapsed| number + u32::from(collapsed <= number))
     }
 
-    /// Triangles of `mesh` with area.
+    /// Returns the triangles of `mesh` with area.
     pub fn with_area(&self) -> Vec<u32> {
         let all = 0..self.mesh.triangles.len() as u32;
         all.filter(|t| self.flat.binary_search(t).is_err()).collect()
     }
 }
 
-/// Checks that a mesh can be looked at.
-pub(super) fn check(mesh: &TriMesh, which: Which) -> Result<(), VerifyError> {
+/// Checks that a mesh has finite coordinates and no vertex number out of range.
+pub(super) fn check(mesh: &TriMesh, which: MeshRole) -> Result<(), VerifyError> {
     mesh.check().map_err(|source| VerifyError::Mesh { which, source })
 }

@@ -2,8 +2,8 @@
 //!
 //! As in the patches of the contour ([`contour`](crate::contour)), a vertex is moved only if its
 //! triangles keep an area and their side, and meet neither another triangle nor each other. Exact
-//! predicates decide, on the coordinates that will be written. So the mesh stays embedded, whatever a
-//! move is for.
+//! predicates decide, on the coordinates that will be written. So the mesh stays embedded, whatever
+//! a move is for.
 
 use crate::geom::box_tree::BoxTree;
 use crate::geom::predicates::projection_axis;
@@ -52,8 +52,8 @@ impl<'a> Embedding<'a> {
 
     /// Moves a vertex to `to` if the mesh stays embedded, and returns whether it did.
     ///
-    /// `first` is the vertex's first position, `star` are all its triangles. `to` must be rounded as it
-    /// will be written.
+    /// `first` is the vertex's first position, `star` are all its triangles. `to` must be rounded
+    /// as it will be written.
     pub fn try_move(&mut self, vertex: u32, star: &[u32], first: DVec3, to: DVec3) -> bool {
         if (to - first).abs().max_element() > self.max_travel {
             return false;

@@ -1,10 +1,10 @@
 //! Shape processing of section and shell (\[WC13\] section 4.3).
 //!
-//! Each round moves the vertices at the section towards the minimisers of the quadratic error of all
-//! faces around them, wherever the minimisers are. Vertices of the shell alone go to the true shell.
-//! Each move is tested exactly ([`Embedding`]), and none touches the patch. The normals of the section
-//! are those of the walls on the boundary's edges, or, as in the paper, the faces' own, smoothed in
-//! each round.
+//! Each round moves the vertices at the section towards the minimisers of the quadratic error of
+//! all faces around them, wherever the minimisers are. Vertices of the shell alone go to the true
+//! shell. Each move is tested exactly ([`Embedding`]), and none touches the patch. The normals of
+//! the section are those of the walls on the boundary's edges, or, as in the paper, the faces' own,
+//! smoothed in each round.
 
 use super::embedding::Embedding;
 use crate::contour::Precision;
@@ -17,9 +17,9 @@ use crate::thicken::{SectionNormals, ShapeCounts};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Share of the way to the minimiser that a vertex goes in a round: alpha of \[WC13\]. Exact normals stay
-/// as they are, and so does the minimiser: there a vertex goes all the way at once, and only this far
-/// where an exact test refuses that.
+/// Share of the way to the minimiser that a vertex goes in a round: alpha of \[WC13\]. Exact
+/// normals stay as they are, and so does the minimiser: there a vertex goes all the way at once,
+/// and only this far where an exact test refuses that.
 const BLENDING: f64 = 0.25;
 
 /// Minimum length of a move, in voxels. Nobody sees shorter ones, and their tests take as long.
@@ -28,8 +28,8 @@ const MIN_MOVE: f64 = 0.02;
 /// Maximum distance of a vertex from where the contour had it, in voxels: two cells of the lattice.
 const MAX_TRAVEL: f64 = 2.0;
 
-/// Minimum cosine between the normals of two section faces that are smoothed together: 30 degrees. Faces
-/// at a larger angle are on two sides of a corner of the boundary, which stays.
+/// Minimum cosine between the normals of two section faces that are smoothed together: 30 degrees.
+/// Faces at a larger angle are on two sides of a corner of the boundary, which stays.
 const MIN_ALIGNMENT: f64 = 0.866;
 
 /// A triangle of the contour, with the solid's boundary at its lattice edge.
@@ -175,8 +175,8 @@ impl MovableFaces {
     }
 }
 
-/// Replaces the normal of each face of the section by the mean normal of the faces around it (steps 1, 2
-/// and 4 of \[WC13\] section 4.3).
+/// Replaces the normal of each face of the section by the mean normal of the faces around it (steps
+/// 1, 2 and 4 of \[WC13\] section 4.3).
 fn smooth(embedding: &Embedding<'_>, movable: &mut MovableFaces) {
     let sections: Vec<u32> = (0..movable.faces.len())
         .filter(|&n| movable.faces[n].of == SolidFace::Section)

@@ -16,7 +16,8 @@ pub(crate) struct Boundary {
     on_boundary: Vec<bool>,
     /// Per half-edge (3 t + side), whether it is on the boundary.
     edges: Vec<bool>,
-    /// Per vertex of the boundary, the outward unit vector in the surface: the mean of its two edges'.
+    /// Per vertex of the boundary, the outward unit vector in the surface: the mean of its two
+    /// edges'.
     outward: Vec<DVec3>,
     /// Vertices in which several fans of triangles touch, ascending.
     pub touching: Vec<u32>,
@@ -37,8 +38,8 @@ impl Boundary {
     /// Finds the boundary of `mesh`.
     ///
     /// # Errors
-    /// When an edge has more than two triangles or two that run the same way, or a vertex inside the surface is one of
-    /// another part, too.
+    /// When an edge has more than two triangles or two that run the same way, or a vertex inside
+    /// the surface is one of another part, too.
     pub fn new(mesh: &TriMesh, topology: &Topology) -> Result<Boundary, PatchError> {
         let defects = topology.defects();
         let ends = |edge: [u32; 2]| edge.map(|v| mesh.vertices[v as usize]);
@@ -110,8 +111,8 @@ impl Boundary {
         self.touching.binary_search(&vertex).map_or(DVec3::ZERO, |n| self.touching_normals[n])
     }
 
-    /// Returns the unit normal of the wall that stands on the boundary at a point of it. The normal lies
-    /// in the plane of the surface and leads out of it.
+    /// Returns the unit normal of the wall that stands on the boundary at a point of it. The normal
+    /// lies in the plane of the surface and leads out of it.
     pub fn wall(&self, mesh: &TriMesh, sample: &Sample) -> DVec3 {
         let triangle = sample.triangle;
         match sample.feature {
@@ -167,8 +168,8 @@ fn touching_vertices(mesh: &TriMesh, topology: &Topology) -> Result<Vec<u32>, Pa
     Ok(touching)
 }
 
-/// Walks the triangles of a fan around `v` in both directions from `first`, as long as `visit` has not
-/// seen them. Returns the number of triangles, and whether the fan is open.
+/// Walks the triangles of a fan around `v` in both directions from `first`, as long as `visit` has
+/// not seen them. Returns the number of triangles, and whether the fan is open.
 fn fan(
     mesh: &TriMesh,
     topology: &Topology,
@@ -198,7 +199,8 @@ fn fan(
 /// Joins boundary edges to loops.
 ///
 /// Where fans touch in a vertex, a loop goes on with the next fan's edge across the gap. The strips
-/// along the gaps then join the fans to one ring around the vertex, and the solid is 2-manifold there.
+/// along the gaps then join the fans to one ring around the vertex, and the solid is 2-manifold
+/// there.
 fn trace(mesh: &TriMesh, topology: &Topology, starts: &[BoundaryEdge], touching: &[u32]) -> Vec<Vec<u32>> {
     // The edge that starts at each vertex with one fan.
     let mut from = vec![usize::MAX; mesh.vertices.len()];

@@ -1,9 +1,9 @@
 //! Holes of the patch that are too narrow for the lattice, and the caps that close them.
 //!
-//! A hole that is narrower than some voxels has no wall on the lattice: no node lies in it, or its wall
-//! grows together with the wall of the hole next to it. Such a hole is closed before anything else, by
-//! a cap on its own vertices (\[WC13\] section 4.2 closes holes in the same way). The patch with its
-//! caps is thickened then.
+//! A hole that is narrower than some voxels has no wall on the lattice: no node lies in it, or its
+//! wall grows together with the wall of the hole next to it. Such a hole is closed before anything
+//! else, by a cap on its own vertices (\[WC13\] section 4.2 closes holes in the same way). The
+//! patch with its caps is thickened then.
 
 use super::boundary::Boundary;
 use super::minimal_triangulation::Polygon;
@@ -23,24 +23,24 @@ const NARROW: f64 = 2.0;
 /// once: the pillar below such a vertex fills three voxels, and a node must be left.
 const NARROW_TOUCHING: f64 = 4.0;
 
-/// Maximum width, in voxels, of holes that are closed when they have proved to be in the way. Wider ones
-/// are shape, and a lattice that cannot wall them is too coarse.
+/// Maximum width, in voxels, of holes that are closed when they have proved to be in the way. Wider
+/// ones are shape, and a lattice that cannot wall them is too coarse.
 const MAX_CAPPED_WIDTH: f64 = 12.0;
 
-/// Minimum component of the mean normal along a hole in the direction of its cap's normal. The boundary
-/// of a disc has -1, the end of a tube 0, and neither is a hole.
+/// Minimum component of the mean normal along a hole in the direction of its cap's normal. The
+/// boundary of a disc has -1, the end of a tube 0, and neither is a hole.
 const MIN_ALIGNMENT: f64 = 0.5;
 
-/// Maximum number of triangulations of a hole, each without the triangles that met something before.
-/// Each try forbids one triangle at least, and most holes have a dozen.
+/// Maximum number of triangulations of a hole, each without the triangles that met something
+/// before. Each try forbids one triangle at least, and most holes have a dozen.
 const MAX_TRIES: usize = 30;
 
 /// A boundary loop around a hole.
 #[derive(Clone, Debug)]
 struct Hole {
     polygon: Polygon,
-    /// Four times the area over the length, in model units: the diameter of a round hole, the edge of a
-    /// square one.
+    /// Four times the area over the length, in model units: the diameter of a round hole, the edge
+    /// of a square one.
     width: f64,
     /// Whether the loop touches a boundary loop in a vertex.
     touches: bool,
@@ -177,7 +177,8 @@ impl Hole {
         is_hole.then(|| Hole { polygon, width: 4.0 * area.length() / length, touches })
     }
 
-    /// Finds triangles over the hole that meet nothing of the patch, and have no edge of it as a diagonal.
+    /// Finds triangles over the hole that meet nothing of the patch, and have no edge of it as a
+    /// diagonal.
     fn cap(&self, patch: &TriMesh, tree: &BoxTree) -> Option<Vec<[u32; 3]>> {
         let mut polygon = self.polygon.clone();
         let is_taken = |a: u32, b: u32| {
@@ -235,8 +236,8 @@ fn meets(patch: &TriMesh, tree: &BoxTree, t: [u32; 3]) -> bool {
     found
 }
 
-/// Whether two triangles of a cap have more in common than they may: an edge that both run through the
-/// same way, or a point.
+/// Whether two triangles of a cap have more in common than they may: an edge that both run through
+/// the same way, or a point.
 fn do_meet(patch: &TriMesh, a: [u32; 3], b: [u32; 3]) -> bool {
     let corners = |t: [u32; 3]| t.map(|v| patch.vertices[v as usize]);
     let shared: Vec<u32> = a.into_iter().filter(|v| b.contains(v)).collect();

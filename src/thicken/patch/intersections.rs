@@ -28,9 +28,9 @@ pub(crate) fn check_patch(patch: &TriMesh, run: &RunSettings) -> Result<(), Thic
     }
 }
 
-/// Least number of triangles, for each triangle of the patch, at which each triangle of the patch is
-/// looked up by itself. With fewer, all pairs are gone through, which takes a few times as long as
-/// looking up one in eight.
+/// Least number of triangles, for each triangle of the patch, at which each triangle of the patch
+/// is looked up by itself. With fewer, all pairs are gone through, which takes a few times as long
+/// as looking up one in eight.
 const TRIANGLES_PER_LOOKUP: usize = 8;
 
 /// Finds the triangles from number `patch` on that meet one before, each with a point of both.

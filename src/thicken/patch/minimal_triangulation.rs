@@ -1,5 +1,5 @@
-//! Minimal-area triangulation of a polygon in space (Barequet and Sharir, \[WC13\] section 4.2): the cap
-//! over a hole or a small rim.
+//! Minimal-area triangulation of a polygon in space (Barequet and Sharir, \[WC13\] section 4.2):
+//! the cap over a hole or a small rim.
 
 use glam::DVec3;
 use std::collections::BTreeSet;
@@ -22,15 +22,15 @@ pub(crate) struct Polygon {
 impl Polygon {
     /// Finds the triangulation of least area, by indices into the polygon.
     ///
-    /// It has no forbidden triangle, and no diagonal between vertices for which `is_taken`. `None` when
-    /// there is no such triangulation.
+    /// It has no forbidden triangle, and no diagonal between vertices for which `is_taken`. `None`
+    /// when there is no such triangulation.
     pub fn minimal_triangulation(&self, is_taken: impl Fn(u32, u32) -> bool) -> Option<Vec<[usize; 3]>> {
         let n = self.vertices.len();
         if !(3..=MAX_VERTICES).contains(&n) {
             return None;
         }
-        // For the polygon from index i to j, closed by the edge (i, j): the least area, and the tip of the
-        // triangle at that edge.
+        // For the polygon from index i to j, closed by the edge (i, j): the least area, and the tip
+        // of the triangle at that edge.
         let mut least = vec![(0.0f64, usize::MAX); n * n];
         for span in 2..n {
             for i in 0..n - span {
@@ -103,7 +103,8 @@ mod tests {
         assert_eq!(triangles.len(), 4);
         let area: f64 = triangles.iter().map(|&t| l.area(t)).sum();
         assert!((area - 3.0).abs() < 1e-12);
-        // The diagonals from the inner corner are all it has: without one of them more area is needed.
+        // The diagonals from the inner corner are all it has: without one of them more area is
+        // needed.
         let other = l.minimal_triangulation(|a, b| (a, b) == (0, 3)).unwrap();
         assert!(other.iter().map(|&t| l.area(t)).sum::<f64>() > 2.9);
         assert!(l.minimal_triangulation(|_, _| true).is_none());

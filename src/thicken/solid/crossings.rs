@@ -87,8 +87,8 @@ struct LeafNodes<'a> {
 }
 
 impl<'a> LeafNodes<'a> {
-    /// Returns the lower nodes of the edges that change sign elsewhere than at the inset, as far as the
-    /// ends of an edge say so.
+    /// Returns the lower nodes of the edges that change sign elsewhere than at the inset, as far as
+    /// the ends of an edge say so.
     fn edges_off_inset(&self) -> LeafMask {
         let mut other = [0; 8];
         for axis in Axis::ALL {
@@ -99,8 +99,8 @@ impl<'a> LeafNodes<'a> {
         other
     }
 
-    /// Finds the crossings of all edges that start in the leaf and have a number, in the order of the
-    /// numbers.
+    /// Finds the crossings of all edges that start in the leaf and have a number, in the order of
+    /// the numbers.
     fn cross_all(&self, numbers: &EdgeNumbers) -> Vec<(Crossing, SolidFace, DVec3)> {
         let unknown = (Crossing { t: 0.0, normal: [0.0; 3], triangle: 0 }, SolidFace::default(), DVec3::ZERO);
         let mut all = vec![unknown; numbers.range(self.leaf).len()];
@@ -123,7 +123,8 @@ impl<'a> LeafNodes<'a> {
         all
     }
 
-    /// Advances the searches until all crossings are found. Calls `found` with each search's number.
+    /// Advances the searches until all crossings are found. Calls `found` with each search's
+    /// number.
     fn search_all(
         &self,
         searches: &mut Vec<(usize, EdgeSearch<'a>)>,

@@ -4,9 +4,9 @@ use crate::band::{LeafId, SignField};
 use crate::lattice::{Axis, LeafMask, Z_FIRST, Z_LAST};
 use rayon::prelude::*;
 
-/// Number of nodes that a set grows by along each axis. The contour's faces at an edge take all edges
-/// of the four cells around it, and the next faces are there, too: with them, holes and islands of up
-/// to five faces are closed.
+/// Number of nodes that a set grows by along each axis. The contour's faces at an edge take all
+/// edges of the four cells around it, and the next faces are there, too: with them, holes and
+/// islands of up to five faces are closed.
 const STEPS: usize = 3;
 
 /// Returns the nodes at most [`STEPS`] steps along each axis from those of `masks`, leaf by leaf.
@@ -28,8 +28,8 @@ pub(super) fn dilate(signs: &SignField, mut masks: Vec<LeafMask>) -> Vec<LeafMas
     masks
 }
 
-/// Grows a leaf's mask by one node in both directions of an axis. `before` and `after` are the masks
-/// of the neighbouring leaves.
+/// Grows a leaf's mask by one node in both directions of an axis. `before` and `after` are the
+/// masks of the neighbouring leaves.
 fn dilate_along(axis: Axis, before: LeafMask, own: LeafMask, after: LeafMask) -> LeafMask {
     std::array::from_fn(|x| {
         let [low, word, high] = [before[x], own[x], after[x]];

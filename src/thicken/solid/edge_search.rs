@@ -1,5 +1,5 @@
-//! Root finding along a lattice edge: the point in which it leaves the solid, the face that it crosses
-//! there, and the normal.
+//! Root finding along a lattice edge: the point in which it leaves the solid, the face that it
+//! crosses there, and the normal.
 
 use super::region::{Region, Solid};
 use crate::distance::Sample;
@@ -21,20 +21,20 @@ pub(crate) enum SolidFace {
     Medial,
 }
 
-/// Length at which bisection ends, in voxels: far below what the placement of a vertex shows, far above
-/// rounding.
+/// Length at which bisection ends, in voxels: far below what the placement of a vertex shows, far
+/// above rounding.
 const MIN_WIDTH: f64 = 1e-6;
 
-/// Maximum distance of a crossing from the inset or the shell, in voxels: far below what the placement
-/// of a vertex shows.
+/// Maximum distance of a crossing from the inset or the shell, in voxels: far below what the
+/// placement of a vertex shows.
 const ON_FACE: f64 = 1e-5;
 
-/// Number of steps along the distance before bisection alone goes on. One suffices where one triangle
-/// is the closest along the edge.
+/// Number of steps along the distance before bisection alone goes on. One suffices where one
+/// triangle is the closest along the edge.
 const MAX_ROOT_STEPS: usize = 12;
 
-/// Distance from the plane of a wall, in voxels, of the two points that show whether the edge leaves
-/// the solid there; together less than [`MIN_WIDTH`].
+/// Distance from the plane of a wall, in voxels, of the two points that show whether the edge
+/// leaves the solid there; together less than [`MIN_WIDTH`].
 const WALL_PROBE: f64 = 0.3 * MIN_WIDTH;
 
 /// A point of a lattice edge, with its closest point of S.
@@ -94,8 +94,8 @@ impl<'a> EdgeSearch<'a> {
         EdgeSearch { edge, inside, outside, region, step: 0, depth, face, found: None, last: None }
     }
 
-    /// Whether the ends say that this edge crosses the inset: the outer end is above it, and between the
-    /// ends neither the distance nor the closest point jumps.
+    /// Whether the ends say that this edge crosses the inset: the outer end is above it, and
+    /// between the ends neither the distance nor the closest point jumps.
     pub fn is_at_inset(&self) -> bool {
         let EdgeSearch { edge, inside, outside, region, .. } = self;
         let is_on_boundary = |end: &EdgeSample| {
@@ -179,8 +179,8 @@ impl LatticeEdge<'_> {
         p
     }
 
-    /// Returns the parameter at which the distance would be `depth` if it went on as it does at `end`: a
-    /// Newton step.
+    /// Returns the parameter at which the distance would be `depth` if it went on as it does at
+    /// `end`: a Newton step.
     fn newton(&self, end: &EdgeSample, depth: f64) -> Option<f64> {
         let Sample { distance, closest, .. } = end.sample;
         let slope = (self.at(end.t) - closest)[self.axis as usize] / distance;
@@ -188,8 +188,8 @@ impl LatticeEdge<'_> {
         t.is_finite().then_some(t)
     }
 
-    /// Returns the share of the way from the inner point to the outer one at which to look for the wall
-    /// that the outer one is beyond.
+    /// Returns the share of the way from the inner point to the outer one at which to look for the
+    /// wall that the outer one is beyond.
     ///
     /// The first sample is a little beyond the wall's plane, the second a little before it. `None`
     /// where that leads nowhere, or where the second sample is due without the first.
@@ -233,7 +233,8 @@ impl LatticeEdge<'_> {
         }
         if self.solid.classify(self.at(outside.t), &outside.sample) == Region::Beside {
             let wall = self.solid.boundary.wall(distance.mesh(), &outside.sample);
-            // Where the boundary of another part of S is as near, the medial plane of both is the wall.
+            // Where the boundary of another part of S is as near, the medial plane of both is the
+            // wall.
             let apart = (inside.sample.closest - outside.sample.closest).length();
             if wall != DVec3::ZERO && apart <= 0.1 * self.voxel {
                 return (self.crossing(&outside, wall), SolidFace::Section);

@@ -1,4 +1,5 @@
-//! The solid on a lattice: nodes inside (\[WC13\] section 3), and crossings of edges with its boundary.
+//! The solid on a lattice: nodes inside (\[WC13\] section 3), and crossings of edges with its
+//! boundary.
 
 pub(super) mod crossings;
 mod dilate;

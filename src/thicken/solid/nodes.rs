@@ -1,4 +1,5 @@
-//! Nodes in the solid (\[WC13\] section 3): those of the band around S whose closest triangle says so.
+//! Nodes in the solid (\[WC13\] section 3): those of the band around S whose closest triangle says
+//! so.
 
 use super::one_sided::OneSided;
 use super::region::{Region, Solid};
@@ -33,14 +34,14 @@ pub(crate) struct NodeRange {
     pub max_distance: f64,
     /// Maximum height over S. Nodes that are clearly higher are left out.
     pub max_height: f64,
-    /// Least and largest distance of nodes that are in the solid, with all nodes next to them, if the
-    /// closest point is not on the boundary.
+    /// Least and largest distance of nodes that are in the solid, with all nodes next to them, if
+    /// the closest point is not on the boundary.
     pub sure_inside: [f64; 2],
 }
 
 impl Nodes {
-    /// Collects the nodes of the candidate region of \[WC13\] Definition 4 on one side of S, and the
-    /// triangles near them.
+    /// Collects the nodes of the candidate region of \[WC13\] Definition 4 on one side of S, and
+    /// the triangles near them.
     pub fn new(
         distance: &SignedDistance,
         boundary: &Boundary,

@@ -6,12 +6,12 @@ use crate::band::{BlockCandidates, BlockState, LeafPolicy};
 /// mesh has no surface, so the band has none.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OneSided<'a> {
-    /// Maximum height, in model units, of nodes over the planes of all triangles that can be closest to
-    /// them. Higher nodes are left out: whatever feature of these triangles they are closest to, they
-    /// are on its positive side.
+    /// Maximum height, in model units, of nodes over the planes of all triangles that can be
+    /// closest to them. Higher nodes are left out: whatever feature of these triangles they are
+    /// closest to, they are on its positive side.
     pub max_height: f64,
-    /// Distances, in model units, between which nodes are inside the solid if they are under the planes
-    /// of all triangles that can be closest to them, and none of these is at the boundary.
+    /// Distances, in model units, between which nodes are inside the solid if they are under the
+    /// planes of all triangles that can be closest to them, and none of these is at the boundary.
     pub sure_inside: [f64; 2],
     /// Per triangle, whether a vertex of it is on the boundary.
     pub at_boundary: &'a [bool],

@@ -7,9 +7,9 @@
 //!  shell    |_____________________|   |     shell: at depth r
 //! ```
 //!
-//! The contour is that of \[WC13\] Definition 2 without the layer between S and the inset, so that no
-//! face of the contour comes near S. The strip from the boundary of S to the rim of the inset closes
-//! the solid.
+//! The contour is that of \[WC13\] Definition 2 without the layer between S and the inset, so that
+//! no face of the contour comes near S. The strip from the boundary of S to the rim of the inset
+//! closes the solid.
 
 use super::vertex_pillars::VertexPillars;
 use crate::candidates::CandidateLists;

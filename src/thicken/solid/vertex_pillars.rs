@@ -11,8 +11,8 @@ use std::collections::HashMap;
 #[derive(Debug)]
 pub(crate) struct VertexPillars {
     pillars: Vec<Pillar>,
-    /// Numbers of the pillars near each cube, ascending. A cube is as wide as a pillar: a larger one
-    /// would be near to many.
+    /// Numbers of the pillars near each cube, ascending. A cube is as wide as a pillar: a larger
+    /// one would be near to many.
     near: HashMap<[i32; 3], Vec<u32>>,
     /// Half the length of a pillar, in model units.
     half_length: f64,
@@ -32,7 +32,8 @@ struct Pillar {
 }
 
 impl VertexPillars {
-    /// Places a pillar at each vertex in which parts of `surface` touch. Lengths are in model units.
+    /// Places a pillar at each vertex in which parts of `surface` touch. Lengths are in model
+    /// units.
     pub fn new(surface: &TriMesh, boundary: &Boundary, half_length: f64, radius: f64) -> VertexPillars {
         let cube_width = 2.0 * radius;
         let mut all =
@@ -46,8 +47,8 @@ impl VertexPillars {
 
     fn push(&mut self, pillar: Pillar) {
         let number = self.pillars.len() as u32;
-        // Along each axis of the lattice, each point of the pillar is within `extent` of one of these
-        // points of the pillar's axis.
+        // Along each axis of the lattice, each point of the pillar is within `extent` of one of
+        // these points of the pillar's axis.
         let count = (2.0 * self.half_length / self.radius).ceil().max(1.0);
         let step = 2.0 * self.half_length / count;
         let extent = self.radius + 0.5 * step;
@@ -72,8 +73,8 @@ impl VertexPillars {
         (p / self.cube_width).floor().to_array().map(|x| x as i32)
     }
 
-    /// Returns the depth of a point below the vertex of the first pillar that holds it, and the normal
-    /// there.
+    /// Returns the depth of a point below the vertex of the first pillar that holds it, and the
+    /// normal there.
     pub fn at(&self, p: DVec3) -> Option<(f64, DVec3)> {
         if self.pillars.is_empty() {
             return None;

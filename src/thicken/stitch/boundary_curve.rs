@@ -65,8 +65,8 @@ impl<'a> BoundaryCurve<'a> {
         }
     }
 
-    /// Returns the closest point of loop `number` to `p`. With `near`, an arc length and a distance along
-    /// the loop, only points within that distance of that arc length count.
+    /// Returns the closest point of loop `number` to `p`. With `near`, an arc length and a distance
+    /// along the loop, only points within that distance of that arc length count.
     pub fn closest_of(&self, p: DVec3, number: u32, near: Option<(f64, f64)>) -> Option<CurvePoint> {
         let arcs = &self.arc_lengths[number as usize];
         let whole = arcs[arcs.len() - 1];

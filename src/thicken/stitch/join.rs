@@ -18,8 +18,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Maximum number of times that the section is trimmed where no strip fits. The depth to which the patch
-/// hangs into the solid there has nothing to do with the lattice.
+/// Maximum number of times that the section is trimmed where no strip fits. The depth to which the
+/// patch hangs into the solid there has nothing to do with the lattice.
 const MAX_TRIMS: usize = 32;
 
 /// Maximum number of rounds of removing stray rims: each can uncover another stray.
@@ -29,8 +29,8 @@ const MAX_STRAY_ROUNDS: usize = 12;
 /// conflicts wander, and the same number of rings is trimmed around all of them.
 const LOCAL_TRIMS: usize = 20;
 
-/// The places at which the section was trimmed, with the number of times. A place that needs many rings
-/// must not take them from others.
+/// The places at which the section was trimmed, with the number of times. A place that needs many
+/// rings must not take them from others.
 struct TrimHistory {
     places: Vec<(DVec3, usize)>,
     /// Maximum distance of conflicts at the same place, in model units.
@@ -38,8 +38,8 @@ struct TrimHistory {
 }
 
 impl TrimHistory {
-    /// Returns the number of rings of triangles to trim around each conflict: one more with every second
-    /// time at a place.
+    /// Returns the number of rings of triangles to trim around each conflict: one more with every
+    /// second time at a place.
     fn next_rings(&mut self, conflicts: &[Conflict]) -> Vec<usize> {
         let times = |conflict: &Conflict| {
             let at = DVec3::from(conflict.at);
@@ -52,8 +52,8 @@ impl TrimHistory {
     }
 }
 
-/// Removes the rims that run around no boundary loop. Such rims bound holes and islands, which a lattice
-/// makes where it is too coarse for the surface.
+/// Removes the rims that run around no boundary loop. Such rims bound holes and islands, which a
+/// lattice makes where it is too coarse for the surface.
 fn remove_strays(
     patch: &TriMesh,
     boundary: &Boundary,
@@ -87,9 +87,11 @@ struct Gaps {
     small_rims: Vec<Polygon>,
 }
 
-/// Finds the gaps at all rims and boundary loops. Vertices of the rims are numbered on from `first`.
+/// Finds the gaps at all rims and boundary loops. Vertices of the rims are numbered on from
+/// `first`.
 ///
-/// Blocked by a rim or a loop without a counterpart; the blockage has all loops that are near such ones.
+/// Blocked by a rim or a loop without a counterpart; the blockage has all loops that are near such
+/// ones.
 fn gaps(
     patch: &TriMesh,
     boundary: &Boundary,
@@ -157,8 +159,8 @@ fn polygon_over(open: &OpenMesh, rim: &[u32], first: u32) -> Polygon {
     }
 }
 
-/// Returns the strip between a rim and its loop. Without `max_slide`, cross edges may lead from each
-/// vertex of the rim to each vertex of the loop.
+/// Returns the strip between a rim and its loop. Without `max_slide`, cross edges may lead from
+/// each vertex of the rim to each vertex of the loop.
 fn strip(
     curve: &BoundaryCurve,
     patch: &TriMesh,

@@ -128,11 +128,11 @@ impl OpenMesh {
             && self.topology.around_edge(t, side).nth(1).is_none_or(|(other, _)| !self.kept[other as usize])
     }
 
-    /// Closes the holes within stray rims, and drops the islands within them. Returns whether there were
-    /// any.
+    /// Closes the holes within stray rims, and drops the islands within them. Returns whether there
+    /// were any.
     ///
-    /// A hole or an island is a component of the triangles that are left out, or kept, without another
-    /// rim.
+    /// A hole or an island is a component of the triangles that are left out, or kept, without
+    /// another rim.
     pub fn remove_strays(
         &mut self,
         rims: &[Vec<u32>],
@@ -168,11 +168,12 @@ impl OpenMesh {
         found
     }
 
-    /// Collects the component of `start`: the triangles joined to it by edges that are kept, or left out,
-    /// as `start` is. `None` when it has a vertex that it may not have.
+    /// Collects the component of `start`: the triangles joined to it by edges that are kept, or
+    /// left out, as `start` is. `None` when it has a vertex that it may not have.
     ///
-    /// The triangles get `number` in `components`, where 0 stands for none. Most of a large component is
-    /// not looked at: a walk that comes to a component that was given up belongs to it.
+    /// The triangles get `number` in `components`, where 0 stands for none. Most of a large
+    /// component is not looked at: a walk that comes to a component that was given up belongs to
+    /// it.
     fn component_of(
         &self,
         start: u32,
@@ -209,8 +210,8 @@ impl OpenMesh {
         Some(component)
     }
 
-    /// Returns the vertices of each rim, in the direction in which the kept triangles run through its
-    /// edges.
+    /// Returns the vertices of each rim, in the direction in which the kept triangles run through
+    /// its edges.
     pub fn rims(&self) -> Vec<Vec<u32>> {
         let mut near = self.near_rims.clone();
         near.sort_unstable();

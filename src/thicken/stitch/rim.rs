@@ -12,8 +12,8 @@ use std::collections::BTreeMap;
 pub(crate) struct RimLimits {
     /// Maximum distance of a rim's vertex from the boundary: as far as the section can extend.
     pub max_distance: f64,
-    /// Maximum distance along the boundary that a cross edge of a strip may span beyond the adjacent
-    /// vertices.
+    /// Maximum distance along the boundary that a cross edge of a strip may span beyond the
+    /// adjacent vertices.
     pub max_slide: f64,
 }
 
@@ -40,7 +40,8 @@ impl RimProjection {
     pub fn new(curve: &BoundaryCurve, mesh: &TriMesh, rim: &[u32], limits: RimLimits) -> RimProjection {
         let points: Vec<DVec3> = rim.iter().map(|&v| DVec3::from(mesh.vertices[v as usize])).collect();
         let mut closest: Vec<_> = points.par_iter().with_min_len(64).map(|&p| curve.closest(p)).collect();
-        // Where loops are near to each other or touch, a rim belongs to the loop that most of it is near to.
+        // Where loops are near to each other or touch, a rim belongs to the loop that most of it is
+        // near to.
         let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
         closest.iter().for_each(|c| *counts.entry(c.loop_number).or_default() += 1);
         let number = counts.iter().max_by_key(|(_, count)| **count).map_or(0, |(&number, _)| number);
@@ -90,8 +91,8 @@ pub(crate) enum RimMatch {
     Tangled,
 }
 
-/// Maximum product of the numbers of vertices of a loop and its rim for which all strips between them are
-/// looked at: a millisecond.
+/// Maximum product of the numbers of vertices of a loop and its rim for which all strips between
+/// them are looked at: a millisecond.
 const MAX_CROSS_EDGES: usize = 1 << 16;
 
 /// Returns the relation of each rim to its boundary loop.

@@ -1,8 +1,8 @@
 //! Caps over small rims that run around no boundary loop.
 //!
-//! Where sheets are nearer to each other than a voxel, or the walls of two holes meet, the lattice can
-//! leave a hole of a few triangles between section and shell. Its minimal-area triangulation closes it
-//! (\[WC13\] section 4.2).
+//! Where sheets are nearer to each other than a voxel, or the walls of two holes meet, the lattice
+//! can leave a hole of a few triangles between section and shell. Its minimal-area triangulation
+//! closes it (\[WC13\] section 4.2).
 
 use super::strip_fitting::{Conflict, Fit, Surroundings};
 use crate::geom::triangle_pair::meeting_point;
@@ -10,12 +10,12 @@ use crate::run::{Cancelled, RunSettings};
 use crate::thicken::patch::minimal_triangulation::Polygon;
 use glam::DVec3;
 
-/// Maximum number of vertices of a rim that a cap closes. A larger rim is no flaw of the lattice, but
-/// shape.
+/// Maximum number of vertices of a rim that a cap closes. A larger rim is no flaw of the lattice,
+/// but shape.
 pub(super) const MAX_RIM_VERTICES: usize = 24;
 
-/// Maximum number of triangulations of a rim, each without the triangles that met something before. Each
-/// try forbids one triangle at least.
+/// Maximum number of triangulations of a rim, each without the triangles that met something before.
+/// Each try forbids one triangle at least.
 const MAX_TRIES: usize = 60;
 
 impl Surroundings<'_> {

@@ -7,10 +7,10 @@
 //!   l0 -- l1 -- l2 -- l3 - ... -lm    rim
 //! ```
 //!
-//! A *cross edge* (i, j) joins boundary vertex i to rim vertex j. A strip is a path of cross edges from
-//! (0, 0) to (n, m), a step along the boundary or the rim at a time. Dynamic programming finds the
-//! cheapest path (the minimal-area triangulation of Barequet and Sharir, \[WC13\] section 4.2, for two
-//! polygons), without the triangles that are known to meet something.
+//! A *cross edge* (i, j) joins boundary vertex i to rim vertex j. A strip is a path of cross edges
+//! from (0, 0) to (n, m), a step along the boundary or the rim at a time. Dynamic programming finds
+//! the cheapest path (the minimal-area triangulation of Barequet and Sharir, \[WC13\] section 4.2,
+//! for two polygons), without the triangles that are known to meet something.
 
 use glam::DVec3;
 use std::collections::BTreeSet;
@@ -18,9 +18,11 @@ use std::collections::BTreeSet;
 /// A step of a path: a triangle of the strip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Step {
-    /// From cross edge (i, j) to (i + 1, j): the triangle of the boundary's edge i and rim vertex j.
+    /// From cross edge (i, j) to (i + 1, j): the triangle of the boundary's edge i and rim vertex
+    /// j.
     Boundary(u32, u32),
-    /// From cross edge (i, j) to (i, j + 1): the triangle of the rim's edge j and boundary vertex i.
+    /// From cross edge (i, j) to (i, j + 1): the triangle of the rim's edge j and boundary vertex
+    /// i.
     Rim(u32, u32),
 }
 
@@ -31,8 +33,8 @@ pub(crate) struct Polyline {
     pub vertices: Vec<u32>,
     /// Positions of the vertices.
     pub points: Vec<DVec3>,
-    /// Arc length along the boundary at each vertex, in model units. For a vertex of the rim, it is the
-    /// one at the closest point of the boundary.
+    /// Arc length along the boundary at each vertex, in model units. For a vertex of the rim, it is
+    /// the one at the closest point of the boundary.
     pub arc_lengths: Vec<f64>,
 }
 
@@ -58,20 +60,20 @@ struct PathState {
     last: Option<(Step, usize)>,
 }
 
-/// Weight of a cross edge's squared length against a triangle's area. On a flat wall all strips have the
-/// same area, and the one with the shortest cross edges has the best triangles. Much more, and the strip
-/// would not follow the wall's bends.
+/// Weight of a cross edge's squared length against a triangle's area. On a flat wall all strips
+/// have the same area, and the one with the shortest cross edges has the best triangles. Much more,
+/// and the strip would not follow the wall's bends.
 const CROSS_EDGE_WEIGHT: f64 = 0.2;
 
 /// Weight of a fold against the area of the triangles at it: more than any detour.
 const FOLD_WEIGHT: f64 = 30.0;
 
-/// Flags that a path must have at its end, a bit each: a step along the boundary at another vertex of
-/// the rim than its first one, and a step along the rim at another vertex of the boundary.
+/// Flags that a path must have at its end, a bit each: a step along the boundary at another vertex
+/// of the rim than its first one, and a step along the rim at another vertex of the boundary.
 ///
-/// A path without one of them has all steps along the rim at a single vertex of the boundary, or the
-/// other way round. Such a path comes to its first cross edge there once more at the end: four triangles
-/// at one edge.
+/// A path without one of them has all steps along the rim at a single vertex of the boundary, or
+/// the other way round. Such a path comes to its first cross edge there once more at the end: four
+/// triangles at one edge.
 const BOTH_TURNS: usize = 0b11;
 
 impl Strip {
@@ -93,8 +95,8 @@ impl Strip {
 
     /// Finds the cheapest path among those with both turns.
     ///
-    /// This takes four times as long, and is seldom needed: where the boundary is small beside the edges
-    /// of the rim, or the rim beside the edges of the boundary.
+    /// This takes four times as long, and is seldom needed: where the boundary is small beside the
+    /// edges of the rim, or the rim beside the edges of the boundary.
     fn cheapest_turning(&self) -> Option<Vec<Step>> {
         let (n, m) = (self.boundary.points.len() as u32, self.rim.points.len() as u32);
         let rows = self.rows();
@@ -198,7 +200,8 @@ impl Strip {
         Some(steps)
     }
 
-    /// Returns, per boundary vertex, the first and the last rim vertex of its cross edges; both ascend.
+    /// Returns, per boundary vertex, the first and the last rim vertex of its cross edges; both
+    /// ascend.
     fn rows(&self) -> Vec<[usize; 2]> {
         let (n, m) = (self.boundary.points.len(), self.rim.points.len());
         // The rim may go back a little along the boundary.
@@ -222,8 +225,8 @@ impl Strip {
             .collect()
     }
 
-    /// Returns the cost of a step, also for a choice between two that exclude each other. A forbidden
-    /// step costs infinitely much.
+    /// Returns the cost of a step, also for a choice between two that exclude each other. A
+    /// forbidden step costs infinitely much.
     pub fn cost(&self, step: Step) -> f64 {
         if !self.forbidden.is_empty() && self.forbidden.contains(&step) {
             return f64::INFINITY;

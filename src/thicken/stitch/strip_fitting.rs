@@ -10,8 +10,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::{BTreeSet, HashSet};
 
-/// Maximum number of triangulations of the strips, each without the triangles that met something before.
-/// Most conflicts are gone after each; what is left after so many goes round in circles.
+/// Maximum number of triangulations of the strips, each without the triangles that met something
+/// before. Most conflicts are gone after each; what is left after so many goes round in circles.
 const MAX_TRIES: usize = 12;
 
 /// A triangle of a strip or a cap that meets something.
@@ -156,8 +156,8 @@ impl Surroundings<'_> {
 
 /// Returns the costliest triangle at each edge that more than two triangles of strips have.
 ///
-/// A loop that comes through a vertex twice can lead to such an edge: triangles that share an edge need
-/// not meet anywhere else.
+/// A loop that comes through a vertex twice can lead to such an edge: triangles that share an edge
+/// need not meet anywhere else.
 fn costliest_at_edges(
     triangles: &[[u32; 3]],
     steps: &[(usize, Step)],
