@@ -20,7 +20,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `grid` | the lattice rounded to the output's precision, before any decision |
+//! | `rounded_lattice` | the lattice rounded to the output's precision, before any decision |
 //! | `cell`, `sheets` | the cube, and its 256 masks: pairs on faces, sheets, caps and their walls |
 //! | `numbering` | active cells and their vertices, numbered by ranks in bit masks |
 //! | `cells`, `leaf_crossings`, `leaf_vertices` | all cells, leaf by leaf, with the crossings of their edges (`beside`: what of them is a neighbour's) |

@@ -17,25 +17,25 @@ const MAX_MARGIN: f64 = 0.125;
 
 /// The rounded lattice.
 #[derive(Clone, Copy, Debug)]
-pub struct Grid {
+pub struct RoundedLattice {
     lattice: Lattice,
     precision: Precision,
     margin: f64,
 }
 
-impl Grid {
-    /// The grid on `lattice` for cells whose corners have indices of at most `reach` in size.
+impl RoundedLattice {
+    /// Makes the rounded lattice for cells whose corners have indices of at most `reach` in size.
     ///
     /// # Errors
     /// When the coordinates there are too coarse for the voxel size.
-    pub fn new(lattice: Lattice, precision: Precision, reach: u32) -> Result<Grid, ContourError> {
+    pub fn new(lattice: Lattice, precision: Precision, reach: u32) -> Result<RoundedLattice, ContourError> {
         let far = lattice.voxel * f64::from(reach);
         // Two units in the last place: node planes and vertices are off by up to half a unit each. Half
         // a unit in all is the limit below which lattices fail.
         let least = 2.0 * precision.ulp(far) / lattice.voxel;
         // False for what is not a number, too.
         if least <= MAX_MARGIN && lattice.voxel > 0.0 {
-            Ok(Grid { lattice, precision, margin: MARGIN.max(least) })
+            Ok(RoundedLattice { lattice, precision, margin: MARGIN.max(least) })
         } else {
             Err(ContourError::TooFarFromOrigin { far, voxel: lattice.voxel, precision })
         }
@@ -68,13 +68,13 @@ impl Grid {
     /// The rounded world position of the point `local` of a cell, in voxels from its lowest corner on the
     /// lattice before rounding.
     #[inline]
-    pub fn round_ideal(&self, cell: Ijk, local: [f64; 3]) -> [f64; 3] {
-        self.round(self.ideal(cell, local))
+    pub fn round_in_cell(&self, cell: Ijk, local: [f64; 3]) -> [f64; 3] {
+        self.round(self.unrounded(cell, local))
     }
 
     /// The world position of the point `local` of a cell, unrounded.
     #[inline]
-    pub fn ideal(&self, cell: Ijk, local: [f64; 3]) -> [f64; 3] {
+    pub fn unrounded(&self, cell: Ijk, local: [f64; 3]) -> [f64; 3] {
         std::array::from_fn(|a| self.voxel() * (f64::from(cell.0[a]) + local[a]))
     }
 
@@ -118,21 +118,21 @@ mod tests {
     #[test]
     fn margins_grow_with_the_distance() {
         let lattice = Lattice { voxel: 0.1 };
-        assert_eq!(Grid::new(lattice, Precision::F32, 100).unwrap().margin(), MARGIN);
-        let far = Grid::new(lattice, Precision::F32, 600_000).unwrap();
+        assert_eq!(RoundedLattice::new(lattice, Precision::F32, 100).unwrap().margin(), MARGIN);
+        let far = RoundedLattice::new(lattice, Precision::F32, 600_000).unwrap();
         assert!(far.margin() > 0.05 && far.margin() < MAX_MARGIN);
-        assert!(Grid::new(lattice, Precision::F32, 1_000_000).is_err());
-        assert_eq!(Grid::new(lattice, Precision::F64, 10_000_000).unwrap().margin(), MARGIN);
+        assert!(RoundedLattice::new(lattice, Precision::F32, 1_000_000).is_err());
+        assert_eq!(RoundedLattice::new(lattice, Precision::F64, 10_000_000).unwrap().margin(), MARGIN);
         for voxel in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-60, 1e60] {
-            assert!(Grid::new(Lattice { voxel }, Precision::F32, 10).is_err(), "{voxel}");
+            assert!(RoundedLattice::new(Lattice { voxel }, Precision::F32, 10).is_err(), "{voxel}");
         }
     }
 
     #[test]
     fn local_coordinates_go_back_and_forth() {
-        let grid = Grid::new(Lattice { voxel: 0.1 }, Precision::F32, 20_000).unwrap();
+        let lattice = RoundedLattice::new(Lattice { voxel: 0.1 }, Precision::F32, 20_000).unwrap();
         let cell = Ijk::new(20_000 - 1, -7, 0);
-        let local = grid.local(cell, grid.between_walls(cell, [0.0, 1.0, 0.5]));
+        let local = lattice.local(cell, lattice.between_walls(cell, [0.0, 1.0, 0.5]));
         assert_eq!(local[..2], [0.0, 1.0]);
         assert!((local[2] - 0.5).abs() < 1e-6);
     }

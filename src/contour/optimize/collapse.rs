@@ -52,7 +52,7 @@ impl Editor<'_> {
         if !self.is_corner(vertex) {
             return None;
         }
-        let mut others = self.patch.vertices_near(place, NEAR * self.grid.voxel());
+        let mut others = self.patch.vertices_near(place, NEAR * self.lattice.voxel());
         others.retain(|&(v, _)| v != vertex && self.may_go(v, place));
         others.sort_by(|a, b| a.1.total_cmp(&b.1));
         others.into_iter().take(MOST_OTHERS).find_map(|(v, _)| Some((v, self.bring(v, place)?)))
@@ -144,7 +144,7 @@ impl Editor<'_> {
         let [a, b, c] = self.patch.triangle_at(n).corners;
         let area = cross(along(b, -1.0, a), along(c, -1.0, a));
         let longest = distance2(a, b).max(distance2(b, c)).max(distance2(c, a));
-        dot(area, area) < (THIN * self.grid.voxel()).powi(2) * longest
+        dot(area, area) < (THIN * self.lattice.voxel()).powi(2) * longest
     }
 
     /// Merges the ends of the shortest side of a thin triangle.
@@ -196,7 +196,7 @@ impl Editor<'_> {
 
     /// Whether a point is on triangles, nearly, or not on the surface anyway.
     fn is_on(&mut self, p: Point, triangles: &[PatchTriangle]) -> bool {
-        let limit = (LOST * self.grid.voxel()).powi(2);
+        let limit = (LOST * self.lattice.voxel()).powi(2);
         let is_near = |t: &PatchTriangle| {
             let corners = t.corners.map(DVec3::from);
             Triangle::new(corners, t.vertices).closest(DVec3::from(p)).distance_squared <= limit
@@ -210,7 +210,7 @@ impl Editor<'_> {
         if !self.is_corner(vertex) {
             return true;
         }
-        let same = SAME_CORNER * self.grid.voxel();
+        let same = SAME_CORNER * self.lattice.voxel();
         self.features.get(vertex).is_some_and(|FeatureVertex { feature, .. }| {
             let is_same = |p: Point| distance2(feature.point, p) <= same * same;
             let stands_for_it = |v: u32| {

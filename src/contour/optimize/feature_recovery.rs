@@ -92,8 +92,8 @@ pub fn recover(
                 let done = editor.grant_all(&wishes[leaf.0 as usize], stage);
                 (editor.patch, (leaf, done))
             },
-            |(leaf, (done, is_open))| {
-                next[leaf.0 as usize] = (done.refused, is_open);
+            |(leaf, (done, is_partial))| {
+                next[leaf.0 as usize] = (done.refused, is_partial);
                 if !cells.context.owns(leaf) {
                     return;
                 }
@@ -136,14 +136,14 @@ impl Editor<'_> {
         }
         recovered.refused = open.len() as u64;
         recovered.given_up = self.given_up;
-        let is_open = !open.is_empty()
+        let is_partial = !open.is_empty()
             || match stage {
                 Stage::Grant => {
                     wishes.iter().any(|w| self.is_far_around(w.vertex) || self.is_untidy(w.vertex))
                 }
                 Stage::Mend => recovered.split > 0,
             };
-        (recovered, is_open)
+        (recovered, is_partial)
     }
 
     /// The vertices that are not where they belong, corners first, since creases can go around them.
@@ -198,7 +198,7 @@ impl Editor<'_> {
     fn console(&mut self, vertex: u32, place: Point) {
         let Some(from) = self.patch.position(vertex) else { return };
         let error = self.error(from, &Sides::NONE);
-        let near = SHARES.map(|share| Some(self.grid.round(mix(from, place, share))));
+        let near = SHARES.map(|share| Some(self.lattice.round(mix(from, place, share))));
         for place in near.into_iter().chain([self.place_on_surface(vertex)]).flatten() {
             if self.error(place, &Sides::NONE) < error && self.patch.try_move(vertex, place) {
                 return;

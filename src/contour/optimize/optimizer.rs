@@ -5,7 +5,7 @@ use super::distance_cache::Answers;
 use super::patch::{Patch, PatchEdge, PatchTriangle};
 use crate::contour::feature::{Asker, Features, Sides, VertexSet, feature_between, nearest};
 use crate::contour::implicit_surface::Surface;
-use crate::contour::rounded_lattice::Grid;
+use crate::contour::rounded_lattice::RoundedLattice;
 use crate::contour::vertex::Cells;
 use crate::geom::quadric::{cross, dot};
 
@@ -43,7 +43,7 @@ pub struct Editor<'a> {
     /// The surface.
     pub surface: &'a dyn Surface,
     /// The lattice, for its precision.
-    pub grid: &'a Grid,
+    pub lattice: &'a RoundedLattice,
     /// The vertices on creases and corners.
     pub features: &'a Features,
     /// The vertices where the sign jumps.
@@ -71,12 +71,12 @@ impl<'a> Editor<'a> {
         tolerance: f64,
         trusting: bool,
     ) -> Editor<'a> {
-        let (grid, features, jumps) = (&cells.context.grid, &cells.features, &cells.jumps);
+        let (lattice, features, jumps) = (&cells.context.lattice, &cells.features, &cells.jumps);
         let (piece, answers, splits_left, given_up) = (0, Answers::new(), u64::MAX, 0);
         Editor {
             patch,
             surface,
-            grid,
+            lattice,
             features,
             jumps,
             tolerance,
@@ -97,7 +97,7 @@ impl Editor<'_> {
         let is_far = ask.at([0.0; 3]).0.abs() > self.tolerance;
         let place = if is_far { nearest(&mut ask, [0.0; 3]) } else { None };
         self.piece = ask.piece;
-        place.map(|p| self.grid.round(std::array::from_fn(|i| origin[i] + self.voxel() * p[i])))
+        place.map(|p| self.lattice.round(std::array::from_fn(|i| origin[i] + self.voxel() * p[i])))
     }
 
     /// Flips edges at and around a vertex that cut through the solid or the air beside a crease.
@@ -200,7 +200,7 @@ impl Editor<'_> {
         let targets = self.surface_points(from, &around);
         for (share, target) in SHARES.into_iter().flat_map(|share| targets.map(|target| (share, target))) {
             let Some(target) = target else { continue };
-            let target = self.grid.round(mix(from, target, share));
+            let target = self.lattice.round(mix(from, target, share));
             // Part of the way to a crease can lead away from the surface.
             if share < 1.0 && self.error(target, &Sides::NONE) > GOOD_PART * self.error(from, &Sides::NONE) {
                 continue;
@@ -237,7 +237,7 @@ impl Editor<'_> {
     }
 
     fn voxel(&self) -> f64 {
-        self.grid.voxel()
+        self.lattice.voxel()
     }
 
     /// The distance of a point from the surface, in voxels, if that can be more than [`SURE`] by what the sides of

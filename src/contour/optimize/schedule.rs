@@ -98,7 +98,7 @@ pub fn for_each_patch<T: Send>(
 /// Makes the patch around the positions in `region`.
 fn patch_around(mesh: &LeafMesh, context: &CellContext<'_>, leaf: LeafId, region: &Bounds) -> Patch {
     let signs = context.signs;
-    let voxel = context.grid.voxel();
+    let voxel = context.lattice.voxel();
     let bounds = region.grown(PATCH_MARGIN * voxel).within(&around_leaf(context, leaf, LEAF_MARGIN));
     let origin = signs.origin(leaf);
     let delta = |n: i32| [n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1];
@@ -203,7 +203,7 @@ impl NodesNear {
 
 /// Returns the box of a leaf with `margin` voxels around it.
 fn around_leaf(context: &CellContext<'_>, leaf: LeafId, margin: f64) -> Bounds {
-    around(context.signs.origin(leaf), context.grid.voxel(), margin)
+    around(context.signs.origin(leaf), context.lattice.voxel(), margin)
 }
 
 /// Returns the box of the leaf at `origin` with `margin` voxels around it.

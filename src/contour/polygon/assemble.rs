@@ -145,7 +145,7 @@ fn in_leaf(
     let mut output = LeafOutput::default();
     let mut triangles = Vec::new();
     let mut sizes = sizes.iter_mut();
-    let grid = &cells.context.grid;
+    let lattice = &cells.context.lattice;
     let is_partial = cells.context.crossings.numbers.is_partial();
     for_polygons(
         cells,
@@ -159,14 +159,14 @@ fn in_leaf(
             }
             triangles.clear();
             let cut = polygonize(polygon, &envelope, &fit, method, &mut triangles);
-            let hub = || grid.between_walls(node, on_axis(along.0, grid.clamp(along.1)));
+            let hub = || lattice.between_walls(node, on_axis(along.0, lattice.clamp(along.1)));
             if let Some(surface) = cells.context.surface
                 && !is_jump
                 && !fit.sides.is_empty()
             {
                 let corners = polygon.corners();
                 let position = |v| corners.iter().find(|c| c.vertex == v).map_or_else(hub, |c| c.position);
-                let mut ask = Asker { surface, origin: fit.point, voxel: grid.voxel(), piece };
+                let mut ask = Asker { surface, origin: fit.point, voxel: lattice.voxel(), piece };
                 let far = is_far(&triangles, position, &fit, &mut ask);
                 output.far.extend(corners.iter().filter_map(|corner| {
                     let is_feature = cells.features.get(corner.vertex).is_some();

@@ -44,13 +44,13 @@ pub fn for_polygons(
     if numbers.range(leaf).is_empty() {
         return;
     }
-    let grid = &cells.context.grid;
+    let lattice = &cells.context.lattice;
     let inside = cells.context.signs.inside(leaf);
     let origin = cells.context.signs.origin(leaf);
     let around = LeafCells::new(cells, faces, leaf);
     // The planes of the leaf's nodes, and the next ones.
     let planes: [[f64; LEAF_DIM as usize + 1]; 3] =
-        std::array::from_fn(|a| std::array::from_fn(|i| grid.plane(origin.0[a] + i as i32)));
+        std::array::from_fn(|a| std::array::from_fn(|i| lattice.plane(origin.0[a] + i as i32)));
     let at = |local: [i32; 3]| std::array::from_fn(|a| planes[a][local[a] as usize]);
     let mut ids = numbers.range(leaf).map(EdgeId);
     // Made once: it is large, and most have four corners.
@@ -71,7 +71,7 @@ pub fn for_polygons(
             };
             fill(&mut polygon, &around, vertices, local, axis, outside);
             let sample = cells.context.crossings.sample(id);
-            let point = grid.ideal(node, on_axis(axis, sample.t));
+            let point = lattice.unrounded(node, on_axis(axis, sample.t));
             let corners = || polygon.corners().iter().map(|c| c.vertex);
             // Most polygons are near no feature, and sides are large.
             let found;
@@ -81,7 +81,7 @@ pub fn for_polygons(
             } else {
                 &Sides::NONE
             };
-            let fit = Fit::new(point, sample.normal.map(f64::from), sides, grid.voxel());
+            let fit = Fit::new(point, sample.normal.map(f64::from), sides, lattice.voxel());
             let (piece, number) = (sample.triangle, number as u16);
             let (polygon, along, is_jump) = (&polygon, (axis, sample.t), sample.is_jump());
             visit(EdgePolygon { polygon, envelope, fit, piece, node, number, along, is_jump });

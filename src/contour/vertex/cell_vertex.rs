@@ -5,7 +5,7 @@ use super::feasible_region::Region;
 use crate::contour::cell::{Case, Edge, EdgeSet};
 use crate::contour::feature::{Asker, Feature, Normals, SPREAD, Samples, feature, nearest};
 use crate::contour::implicit_surface::Surface;
-use crate::contour::rounded_lattice::Grid;
+use crate::contour::rounded_lattice::RoundedLattice;
 use crate::edge::Crossing;
 use crate::geom::quadric::{Minimiser, Qef, along};
 use crate::lattice::Ijk;
@@ -70,7 +70,7 @@ pub struct Placed {
 /// The position of the vertex of sheet number `sheet` of a cell. `crossing` gives the sample of each of the
 /// sheet's edges.
 pub fn place<'a>(
-    grid: &Grid,
+    lattice: &RoundedLattice,
     cell: Ijk,
     case: &Case,
     sheet: usize,
@@ -97,15 +97,15 @@ pub fn place<'a>(
         let is_feature = minimiser.spread() > SPREAD;
         let is_unsure = samples.disagreement(minimiser.point) > UNSURE;
         if is_feature || is_unsure {
-            let origin = grid.ideal(cell, [0.0; 3]);
-            let mut ask = Asker { surface, origin, voxel: grid.voxel(), piece };
+            let origin = lattice.unrounded(cell, [0.0; 3]);
+            let mut ask = Asker { surface, origin, voxel: lattice.voxel(), piece };
             if is_feature {
                 found = feature(&mut ask, &samples, minimiser.point, qef.mean());
             }
             if found.is_none() && (is_unsure || samples.see_several_sides()) {
                 // Not where the planes meet, but at least on the surface.
-                let (position, _) = in_cell(grid, cell, case, sheet, &crossing, &minimiser);
-                let point = nearest(&mut ask, grid.local(cell, position));
+                let (position, _) = in_cell(lattice, cell, case, sheet, &crossing, &minimiser);
+                let point = nearest(&mut ask, lattice.local(cell, position));
                 found = point.map(|point| Feature { point, normals: Normals::default() });
             }
         }
@@ -119,14 +119,14 @@ pub fn place<'a>(
         }
         None => {}
     }
-    let (position, placement) = in_cell(grid, cell, case, sheet, crossing, &minimiser);
-    let feature = found.map(|f| Feature { point: grid.round_ideal(cell, f.point), ..f });
+    let (position, placement) = in_cell(lattice, cell, case, sheet, crossing, &minimiser);
+    let feature = found.map(|f| Feature { point: lattice.round_in_cell(cell, f.point), ..f });
     Placed { position, placement, feature, is_jump }
 }
 
 /// The position nearest to the minimiser that a cell and its walls allow, rounded.
 fn in_cell<'a>(
-    grid: &Grid,
+    lattice: &RoundedLattice,
     cell: Ijk,
     case: &Case,
     sheet: usize,
@@ -134,9 +134,9 @@ fn in_cell<'a>(
     minimiser: &Minimiser,
 ) -> ([f64; 3], Placement) {
     let edges = case.sheets()[sheet].edges;
-    let margin = grid.margin();
+    let margin = lattice.margin();
     if !case.has_several_sheets()
-        && let Some(position) = free(grid, cell, minimiser.point)
+        && let Some(position) = free(lattice, cell, minimiser.point)
     {
         return (position, Placement::Free);
     }
@@ -144,16 +144,16 @@ fn in_cell<'a>(
     let allowed = Region::of_sheet(case, sheet, KEPT * margin, KEPT_AT_WALLS * margin);
     let target = minimiser.within(region.half_spaces());
     let placement = if target == Some(minimiser.point) { Placement::Free } else { Placement::Clamped };
-    let fits = |position: [f64; 3]| allowed.contains(grid.local(cell, position));
+    let fits = |position: [f64; 3]| allowed.contains(lattice.local(cell, position));
     if let Some(target) = target {
-        let position = grid.round_ideal(cell, target);
+        let position = lattice.round_in_cell(cell, target);
         if fits(position) {
             return (position, placement);
         }
     }
-    let start = start(grid, cell, edges, &crossing, fits);
-    let target = grid.ideal(cell, target.unwrap_or(minimiser.point));
-    let towards = |share: f64| grid.round(mix(start, target, share));
+    let start = start(lattice, cell, edges, &crossing, fits);
+    let target = lattice.unrounded(cell, target.unwrap_or(minimiser.point));
+    let towards = |share: f64| lattice.round(mix(start, target, share));
     let position = (0..HALVINGS).map(|n| towards(0.5f64.powi(n))).find(|&position| fits(position));
     (position.unwrap_or(start), Placement::Clamped)
 }
@@ -161,7 +161,7 @@ fn in_cell<'a>(
 /// A position that is allowed for sure: the mean of the crossings, or if rounding or the margin puts that
 /// on a wall, a position on the way from there to the mean of the midpoints of the crossed edges.
 fn start<'a>(
-    grid: &Grid,
+    lattice: &RoundedLattice,
     cell: Ijk,
     edges: EdgeSet,
     crossing: impl Fn(Edge) -> &'a Crossing,
@@ -169,16 +169,17 @@ fn start<'a>(
 ) -> [f64; 3] {
     let (mut mean, mut middle, count) = ([0.0; 3], [0.0; 3], edges.len() as f64);
     for edge in edges.iter() {
-        let (point, midpoint) = (on_edge(edge, grid.clamp(crossing(edge).t)), on_edge(edge, 0.5));
+        let (point, midpoint) = (on_edge(edge, lattice.clamp(crossing(edge).t)), on_edge(edge, 0.5));
         for a in 0..3 {
             mean[a] += point[a];
             middle[a] += midpoint[a];
         }
     }
-    let mean = mean.map(|x| grid.clamp(x / count));
+    let mean = mean.map(|x| lattice.clamp(x / count));
     let middle = middle.map(|x| x / count);
-    let position =
-        |step: i32| grid.between_walls(cell, mix(mean, middle, f64::from(step) / f64::from(STEPS_TO_MIDDLE)));
+    let position = |step: i32| {
+        lattice.between_walls(cell, mix(mean, middle, f64::from(step) / f64::from(STEPS_TO_MIDDLE)))
+    };
     let found = (0..STEPS_TO_MIDDLE).map(position).find(|&p| fits(p));
     found.unwrap_or_else(|| position(STEPS_TO_MIDDLE))
 }
@@ -191,10 +192,10 @@ pub fn sample(edge: Edge, crossing: &Crossing) -> ([f64; 3], [f64; 3]) {
 
 /// The position of a cell's minimiser, rounded, if that keeps the margin from the cell's walls.
 #[inline]
-pub fn free(grid: &Grid, cell: Ijk, point: [f64; 3]) -> Option<[f64; 3]> {
-    let margin = grid.margin();
+pub fn free(lattice: &RoundedLattice, cell: Ijk, point: [f64; 3]) -> Option<[f64; 3]> {
+    let margin = lattice.margin();
     let is_inside = point.iter().all(|x| (margin..=1.0 - margin).contains(x));
-    is_inside.then(|| grid.round_ideal(cell, point))
+    is_inside.then(|| lattice.round_in_cell(cell, point))
 }
 
 /// The point of an edge at position `t`, in coordinates 0 to 1 of the cell.

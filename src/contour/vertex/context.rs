@@ -3,7 +3,7 @@
 use crate::band::{LeafId, SignField};
 use crate::contour::cell::CellNumbers;
 use crate::contour::implicit_surface::Surface;
-use crate::contour::rounded_lattice::Grid;
+use crate::contour::rounded_lattice::RoundedLattice;
 use crate::edge::Crossings;
 use crate::lattice::Slab;
 
@@ -15,7 +15,7 @@ pub struct CellContext<'a> {
     /// The crossings of the grid edges.
     pub crossings: &'a Crossings,
     /// The rounded lattice.
-    pub grid: Grid,
+    pub lattice: RoundedLattice,
     /// The part of the lattice whose cells are counted.
     pub slab: Slab,
     /// The numbers of the active cells.

@@ -18,7 +18,7 @@ use super::cells::Cells;
 use crate::band::{LeafId, SignField};
 use crate::contour::cell::{Case, CellId, CellNumbers, Corner, Edge, Face, Pair, locate};
 use crate::contour::error::{ContourError, TooManyVertices};
-use crate::contour::rounded_lattice::Grid;
+use crate::contour::rounded_lattice::RoundedLattice;
 use crate::edge::Crossings;
 use crate::geom::predicates::orient3d;
 use crate::lattice::{Axis, Ijk, LEAF_DIM, bits};
@@ -141,10 +141,10 @@ fn in_leaf(cells: &Cells<'_>, vertices: &[[f64; 3]], leaf: LeafId) -> (Vec<Marks
                     continue;
                 }
                 let ijk = signs.origin(leaf) + local;
-                if !passes_corner(&cells.context.grid, ijk, axis, corner, ends) {
+                if !passes_corner(&cells.context.lattice, ijk, axis, corner, ends) {
                     marks.pairs |= 1 << (2 * axis as usize + n);
                     positions.push(middle(
-                        &cells.context.grid,
+                        &cells.context.lattice,
                         cells.context.crossings,
                         signs,
                         leaf,
@@ -169,9 +169,15 @@ fn across(edge: Edge, axis: Axis) -> Edge {
 
 /// Whether the segment between the vertices of `cell` and of the next cell along `axis` passes their
 /// common face strictly on the side of `corner` of the line through the corner's neighbours.
-fn passes_corner(grid: &Grid, cell: Ijk, axis: Axis, corner: Corner, ends: [[f64; 3]; 2]) -> bool {
+fn passes_corner(
+    lattice: &RoundedLattice,
+    cell: Ijk,
+    axis: Axis,
+    corner: Corner,
+    ends: [[f64; 3]; 2],
+) -> bool {
     let (u, v) = axis.others();
-    let node = |c: Corner| grid.node(cell + Ijk(c.offset()));
+    let node = |c: Corner| lattice.node(cell + Ijk(c.offset()));
     let side = orient3d(ends[0], ends[1], node(corner.across(u)), node(corner.across(v)));
     // For the corner at (0, 0) the segment, the line and the corner follow the right hand; each mirroring
     // turns the sign around.
@@ -180,7 +186,7 @@ fn passes_corner(grid: &Grid, cell: Ijk, axis: Axis, corner: Corner, ends: [[f64
 
 /// The middle of a pair on the upper face across `axis` of the cell `local`, exactly on the rounded face.
 fn middle(
-    grid: &Grid,
+    lattice: &RoundedLattice,
     crossings: &Crossings,
     signs: &SignField,
     leaf: LeafId,
@@ -194,10 +200,10 @@ fn middle(
         let (at, number) = locate(signs, leaf, (local + low).0);
         let id = crossings.numbers.get(at, edge.axis(), number).expect("a pair joins crossed edges");
         let mut point = low.0.map(f64::from);
-        point[edge.axis() as usize] = grid.clamp(crossings.sample(id).t);
+        point[edge.axis() as usize] = lattice.clamp(crossings.sample(id).t);
         sum = std::array::from_fn(|i| sum[i] + point[i]);
     }
     let mut point = sum.map(|x| 0.5 * x);
     point[axis as usize] = 1.0;
-    grid.between_walls(signs.origin(leaf) + local, point)
+    lattice.between_walls(signs.origin(leaf) + local, point)
 }

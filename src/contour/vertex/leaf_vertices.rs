@@ -123,7 +123,8 @@ impl Placer<'_> {
         for n in 0..LANES {
             let Some(cell) = self.waiting[n].take() else { break };
             let at = self.context.signs.origin(self.leaf) + cell.local;
-            let smooth = solved.smooth(n).and_then(|point| cell_vertex::free(&self.context.grid, at, point));
+            let smooth =
+                solved.smooth(n).and_then(|point| cell_vertex::free(&self.context.lattice, at, point));
             match smooth {
                 Some(position) => self.vertices[cell.first] = position,
                 None => self.place_one(cell, 0),
@@ -133,10 +134,10 @@ impl Placer<'_> {
 
     /// Places the vertex of a sheet by itself.
     fn place_one(&mut self, Waiting { case, local, first }: Waiting, sheet: usize) {
-        let CellContext { signs, grid, numbers, surface, .. } = self.context;
+        let CellContext { signs, lattice, numbers, surface, .. } = self.context;
         let at = signs.origin(self.leaf) + local;
         let crossing = |edge| self.crossings.of_cell(local.0, edge);
-        let placed = cell_vertex::place(grid, at, case, sheet, crossing, *surface);
+        let placed = cell_vertex::place(lattice, at, case, sheet, crossing, *surface);
         let number = first + sheet;
         self.vertices[number] = placed.position;
         self.found.clamped += u16::from(placed.placement == Placement::Clamped);

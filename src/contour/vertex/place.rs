@@ -11,7 +11,7 @@ use crate::contour::error::ContourError;
 use crate::contour::feature::{Bend, Features, VertexSet};
 use crate::contour::implicit_surface::Surface;
 use crate::contour::mesh::split_slices;
-use crate::contour::rounded_lattice::Grid;
+use crate::contour::rounded_lattice::RoundedLattice;
 use crate::contour::settings::ContourSettings;
 use crate::contour::statistics::ContourStatistics;
 use crate::edge::Crossings;
@@ -58,13 +58,13 @@ pub fn with_vertices<R: Send>(
 ) -> Result<R, ContourError> {
     assert_eq!(crossings.samples.len(), crossings.numbers.len(), "one sample for each crossing");
     let reach = settings.reach.unwrap_or_else(|| reach(signs, crossings));
-    let grid = Grid::new(lattice, settings.precision, reach)?;
+    let rounded = RoundedLattice::new(lattice, settings.precision, reach)?;
     run.install(|| {
         let numbers = CellNumbers::new(signs, run)?;
         let leaves = numbers.leaves().count() + crossings.numbers.leaves().len();
         let phase = run.phase(Phase::Contour, leaves as u64);
         let slab = settings.slab;
-        let context = CellContext { signs, crossings, grid, slab, numbers: &numbers, surface };
+        let context = CellContext { signs, crossings, lattice: rounded, slab, numbers: &numbers, surface };
         let (cells, mut vertices, relocations, statistics) = place_cell_vertices(context, &phase)?;
         let mut faces = face_vertices(&cells, &vertices, run)?;
         vertices.append(&mut faces.positions);
