@@ -57,7 +57,7 @@ mod slab;
 
 pub use crate::quantity::Precision;
 pub use error::{ContourError, TooManyVertices};
-pub use implicit_surface::{Creases, Surface};
+pub use implicit_surface::{Creases, ImplicitSurface, SurfaceSample};
 pub use optimize::MAX_TRIANGLE_REACH;
 pub use polygon::{CutTimes, cut_times};
 pub use settings::{ContourSettings, CutMethod};

@@ -1,21 +1,25 @@
-//! The lattice as it is written: node planes and vertices rounded to the output's precision *before*
-//! anything is decided on them. Rounding afterwards would void every decision.
+//! The lattice as it is written: node planes and vertices rounded to the output's precision.
+//!
+//! They are rounded *before* anything is decided on them. Rounding afterwards would void every decision.
 
 use super::error::ContourError;
 use crate::lattice::{Ijk, Lattice};
 use crate::quantity::Precision;
+use glam::DVec3;
 
-/// How far vertices stay from the walls of their cell, in voxels, as long as rounding allows. Smaller values
-/// let triangles degenerate to needles of that width; larger ones blunt features that lie close to a cell's
-/// wall by up to as much.
+/// The distance that vertices keep from the walls of their cell, in voxels, as long as rounding allows.
+///
+/// Smaller values let triangles degenerate to needles of that width. Larger ones blunt features that lie
+/// close to a cell's wall by up to as much.
 const MARGIN: f64 = 1e-3;
 
-/// Margins above this are refused: a cell then has fewer than 16 representable coordinates along its
-/// side, vertices are displaced visibly, and the midpoint of a sheet is no longer sure to lie within its
-/// walls after rounding.
+/// The largest margin, in voxels.
+///
+/// Beyond it a cell has fewer than 16 representable coordinates along an axis, vertices are displaced
+/// visibly, and the midpoint of a sheet is no longer sure to lie within its walls after rounding.
 const MAX_MARGIN: f64 = 0.125;
 
-/// The rounded lattice.
+/// The lattice with rounded node planes.
 #[derive(Clone, Copy, Debug)]
 pub struct RoundedLattice {
     lattice: Lattice,
@@ -24,12 +28,12 @@ pub struct RoundedLattice {
 }
 
 impl RoundedLattice {
-    /// Makes the rounded lattice for cells whose corners have indices of at most `reach` in size.
+    /// Makes the rounded lattice for cells whose corners have indices of at most `extent` in size.
     ///
     /// # Errors
     /// When the coordinates there are too coarse for the voxel size.
-    pub fn new(lattice: Lattice, precision: Precision, reach: u32) -> Result<RoundedLattice, ContourError> {
-        let far = lattice.voxel * f64::from(reach);
+    pub fn new(lattice: Lattice, precision: Precision, extent: u32) -> Result<RoundedLattice, ContourError> {
+        let far = lattice.voxel * f64::from(extent);
         // Two units in the last place: node planes and vertices are off by up to half a unit each. Half
         // a unit in all is the limit below which lattices fail.
         let least = 2.0 * precision.ulp(far) / lattice.voxel;
@@ -41,45 +45,46 @@ impl RoundedLattice {
         }
     }
 
-    /// The voxel size in model units.
+    /// Returns the voxel size in model units.
     #[inline]
     pub fn voxel(&self) -> f64 {
         self.lattice.voxel
     }
 
-    /// The least distance of a vertex from its cell's walls, in voxels.
+    /// Returns the least distance of a vertex from its cell's walls, in voxels.
     #[inline]
     pub fn margin(&self) -> f64 {
         self.margin
     }
 
-    /// The rounded coordinate of node plane `i`.
+    /// Returns the rounded coordinate of node plane `i`.
     #[inline]
     pub fn plane(&self, i: i32) -> f64 {
         self.precision.round(self.lattice.plane(i))
     }
 
-    /// The rounded position of a node.
+    /// Returns the rounded position of a node.
     #[inline]
     pub fn node(&self, ijk: Ijk) -> [f64; 3] {
         ijk.0.map(|i| self.plane(i))
     }
 
-    /// The rounded world position of the point `local` of a cell, in voxels from its lowest corner on the
-    /// lattice before rounding.
+    /// Returns the rounded world position of the point `local` of a cell, in voxels from its lowest corner
+    /// on the lattice before rounding.
     #[inline]
-    pub fn round_in_cell(&self, cell: Ijk, local: [f64; 3]) -> [f64; 3] {
+    pub fn round_in_cell(&self, cell: Ijk, local: DVec3) -> [f64; 3] {
         self.round(self.unrounded(cell, local))
     }
 
-    /// The world position of the point `local` of a cell, unrounded.
+    /// Returns the world position of the point `local` of a cell, in voxels from its lowest corner,
+    /// unrounded.
     #[inline]
-    pub fn unrounded(&self, cell: Ijk, local: [f64; 3]) -> [f64; 3] {
-        std::array::from_fn(|a| self.voxel() * (f64::from(cell.0[a]) + local[a]))
+    pub fn unrounded(&self, cell: Ijk, local: DVec3) -> DVec3 {
+        self.voxel() * (DVec3::from(cell.0.map(f64::from)) + local)
     }
 
-    /// The rounded world position of the point of a cell whose coordinates between its rounded walls are
-    /// `local`, 0 to 1 each.
+    /// Returns the rounded world position of the point of a cell whose coordinates between its rounded walls
+    /// are `local`, 0 to 1 each.
     #[inline]
     pub fn between_walls(&self, cell: Ijk, local: [f64; 3]) -> [f64; 3] {
         std::array::from_fn(|a| {
@@ -88,25 +93,26 @@ impl RoundedLattice {
         })
     }
 
-    /// The inverse of [`between_walls`](Self::between_walls), exact to a few units in the last place of the
+    /// Inverts [`between_walls`](Self::between_walls), exact to a few units in the last place of the
     /// *result*, however far from the origin the cell is.
     #[inline]
-    pub fn local(&self, cell: Ijk, position: [f64; 3]) -> [f64; 3] {
-        std::array::from_fn(|a| {
+    pub fn local(&self, cell: Ijk, position: [f64; 3]) -> DVec3 {
+        DVec3::from_array(std::array::from_fn(|a| {
             let (low, high) = (self.plane(cell.0[a]), self.plane(cell.0[a] + 1));
             (position[a] - low) / (high - low)
-        })
+        }))
     }
 
     /// Rounds a world position.
     #[inline]
-    pub fn round(&self, position: [f64; 3]) -> [f64; 3] {
-        position.map(|x| self.precision.round(x))
+    pub fn round(&self, position: DVec3) -> [f64; 3] {
+        position.to_array().map(|x| self.precision.round(x))
     }
 
-    /// A position along an edge, kept `margin` away from the ends; what is not a number becomes the lower end.
+    /// Returns a position along an edge, in voxels, kept the margin away from the ends. What is not a number
+    /// becomes the lower end.
     #[inline]
-    pub fn clamp(&self, t: f64) -> f64 {
+    pub fn clamp_to_edge(&self, t: f64) -> f64 {
         if t >= self.margin { t.min(1.0 - self.margin) } else { self.margin }
     }
 }
@@ -133,7 +139,7 @@ mod tests {
         let lattice = RoundedLattice::new(Lattice { voxel: 0.1 }, Precision::F32, 20_000).unwrap();
         let cell = Ijk::new(20_000 - 1, -7, 0);
         let local = lattice.local(cell, lattice.between_walls(cell, [0.0, 1.0, 0.5]));
-        assert_eq!(local[..2], [0.0, 1.0]);
-        assert!((local[2] - 0.5).abs() < 1e-6);
+        assert_eq!((local.x, local.y), (0.0, 1.0));
+        assert!((local.z - 0.5).abs() < 1e-6);
     }
 }

@@ -15,7 +15,7 @@ pub struct ContourSettings {
     /// The part of the lattice that is counted.
     pub slab: Slab,
     /// The largest index, in size, of all nodes, where `signs` are not all; `None` if they are.
-    pub reach: Option<u32>,
+    pub extent: Option<u32>,
 }
 
 /// How it is decided which triangles stay in the envelope of a grid edge. Either way the mesh is closed,

@@ -1,9 +1,9 @@
 //! The row of steps: the contour of a slab of the lattice, or of all of it.
 
 use super::error::ContourError;
-use super::implicit_surface::Surface;
+use super::implicit_surface::ImplicitSurface;
 use super::mesh::LeafMesh;
-use super::optimize::{BORDER_LEAVES, RECOVERY_STAGES, TOLERANCE_STAGES, recover, refine};
+use super::optimize::{BORDER_LEAVES, RECOVERY_PASSES, TOLERANCE_PASSES, recover, refine};
 use super::polygon::{Triangulation, triangulate};
 use super::settings::ContourSettings;
 use super::statistics::ContourStatistics;
@@ -35,7 +35,7 @@ pub fn contour(
     signs: &SignField,
     crossings: &Crossings,
     lattice: Lattice,
-    surface: Option<&dyn Surface>,
+    surface: Option<&dyn ImplicitSurface>,
     settings: &ContourSettings,
     run: &RunSettings,
 ) -> Result<(TriMesh, ContourStatistics), ContourError> {
@@ -100,7 +100,7 @@ pub fn contour_slab(
     signs: &SignField,
     crossings: &Crossings,
     lattice: Lattice,
-    surface: Option<&dyn Surface>,
+    surface: Option<&dyn ImplicitSurface>,
     settings: &ContourSettings,
     run: &RunSettings,
 ) -> Result<UnorderedContour, ContourError> {
@@ -135,7 +135,7 @@ fn add_far_vertices(relocations: &mut [Vec<Relocation>], far: Vec<(LeafId, Vec<u
 /// Recovers features outside of their cells, and refines the mesh to a tolerance in voxels if there is one.
 fn optimize(
     cells: &Cells<'_>,
-    surface: &dyn Surface,
+    surface: &dyn ImplicitSurface,
     relocations: &[Vec<Relocation>],
     tolerance: Option<f64>,
     mesh: &mut LeafMesh,
@@ -168,8 +168,8 @@ fn optimize(
 /// leaves for each pass. Leaves at the border are not worked on, and the vertices of triangles at a plane
 /// lie up to two leaves beyond it.
 pub fn halo(settings: &ContourSettings) -> i32 {
-    let stages = RECOVERY_STAGES.len() + settings.tolerance.map_or(0, |_| TOLERANCE_STAGES);
-    LEAF_DIM * (BORDER_LEAVES + 2 * stages as i32 + 2)
+    let passes = RECOVERY_PASSES + settings.tolerance.map_or(0, |_| TOLERANCE_PASSES);
+    LEAF_DIM * (BORDER_LEAVES + 2 * passes as i32 + 2)
 }
 
 /// Contours without a surface to sample, and returns the number of triangles around each crossed edge as

@@ -1,7 +1,7 @@
 //! The promises of the module, on analytic surfaces and on random lattices.
 
+mod adversarial_surface;
 mod analytic;
 mod fields;
-mod liars;
 mod random;
 mod sharp;

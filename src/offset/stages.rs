@@ -46,7 +46,7 @@ pub(super) fn run_stages(
 
     let started = Instant::now();
     let contour_settings =
-        ContourSettings { slab, reach: Some(reach(distance, band_settings)), ..settings.contour(lattice) };
+        ContourSettings { slab, extent: Some(reach(distance, band_settings)), ..settings.contour(lattice) };
     let surface = OffsetSurface { distance, r, lists: lists.as_ref(), vanishing: 1e-4 * lattice.voxel };
     let contour = contour_slab(&signs, &crossings, lattice, Some(&surface), &contour_settings, run)?;
     drop((crossings, lists));

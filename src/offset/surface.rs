@@ -1,7 +1,7 @@
 //! The offset surface as the contour asks for it.
 
 use crate::candidates::CandidateLists;
-use crate::contour::{Creases, Surface};
+use crate::contour::{Creases, ImplicitSurface, SurfaceSample};
 use crate::distance::SignedDistance;
 use glam::DVec3;
 
@@ -17,7 +17,7 @@ pub(super) struct OffsetSurface<'a> {
     pub vanishing: f64,
 }
 
-impl Surface for OffsetSurface<'_> {
+impl ImplicitSurface for OffsetSurface<'_> {
     fn creases(&self) -> Creases {
         // Growing takes the union of what grows around each part, shrinking the intersection.
         match self.r {
@@ -32,31 +32,31 @@ impl Surface for OffsetSurface<'_> {
         if self.r == 0.0 { 0.0 } else { 1.0 / self.r.abs() }
     }
 
-    fn at(&self, p: [f64; 3], piece: &mut u32) -> (f64, [f64; 3]) {
-        let near = self.lists.and_then(|lists| lists.at(p));
-        let p = DVec3::from(p);
+    fn sample(&self, p: DVec3, hint: u32) -> SurfaceSample {
+        let near = self.lists.and_then(|lists| lists.at(p.to_array()));
         let sample = match near {
             Some(near) => {
                 let hit = near.closest(self.distance.ssvh(), p);
                 self.distance.from_triangle(p, hit.triangle)
             }
-            None => self.distance.at(p, *piece),
+            None => self.distance.at(p, hint),
         };
-        *piece = sample.triangle;
-        (sample.distance - self.r, self.distance.gradient(p, &sample, self.vanishing).to_array())
+        let gradient = self.distance.gradient(p, &sample, self.vanishing);
+        SurfaceSample { distance: sample.distance - self.r, gradient, triangle: sample.triangle }
     }
-    fn piece_at(&self, p: [f64; 3], piece: u32) -> (f64, [f64; 3]) {
-        let p = DVec3::from(p);
-        let triangle = self.distance.ssvh().triangle(piece);
-        let from = p - triangle.closest(p).point;
+
+    fn sample_triangle(&self, p: DVec3, triangle: u32) -> SurfaceSample {
+        let shape = self.distance.ssvh().triangle(triangle);
+        let from = p - shape.closest(p).point;
         let length = from.length();
         if self.r == 0.0 || length <= self.vanishing {
             // The surface is the triangle itself, continued as its plane.
-            let height = (p - triangle.corners[0]).dot(triangle.normal);
-            return (height - self.r, triangle.normal.to_array());
+            let height = (p - shape.corners[0]).dot(shape.normal);
+            return SurfaceSample { distance: height - self.r, gradient: shape.normal, triangle };
         }
-        // On the side of the triangle that is looked at: which one that is depends on the neighbours only at r = 0.
+        // On the side of the triangle that is looked at: which one that is depends on the neighbours only at
+        // r = 0.
         let outward = from / length.copysign(self.r);
-        (length.copysign(self.r) - self.r, outward.to_array())
+        SurfaceSample { distance: length.copysign(self.r) - self.r, gradient: outward, triangle }
     }
 }

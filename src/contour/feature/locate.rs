@@ -1,139 +1,126 @@
-//! Where a crease or a corner of the surface is, from the planes that a cell sees of it.
+//! The position of a crease or a corner of the surface, from the tangent planes that a cell sees.
 //!
-//! The minimiser of the error function of a cell is only as good as the cell's crossings: a third plane that
-//! crosses no edge of the cell is missing, and curved sides are taken as planes far from where they are needed.
-//! With the surface at hand, the pieces of it that the crossings lie on are asked at the place where they meet, until it
-//! stays, and then the surface itself, whether it has another piece there that is nearer:
+//! The minimiser of a cell's error function is only as good as the cell's crossings. A third plane that
+//! crosses no edge of the cell is missing, and curved faces are taken as planes far from where they are
+//! needed. So the triangles of the crossings are followed: the surface of each is sampled where the planes
+//! meet, until that point converges. Then the surface itself is sampled there, in case that another
+//! triangle of it is nearer.
 //!
 //! ```text
-//!   planes at the crossings -> where they meet -> planes of the pieces there -> where these meet ... -> is it on the
-//!        A \   / B                 \ /                  \ /                      surface? then that is the feature;
-//!           \ /                     x                    x                       else go on with the piece that is nearer
+//!   planes at the crossings -> where they meet -> planes of the triangles there -> where these meet ... -> is it on the
+//!        A \   / B                 \ /                    \ /                      surface? then that is the feature;
+//!           \ /                     x                      x                       else follow the nearer triangle
 //! ```
 
-use super::tangent_planes::{Normals, ONE_SIDE, Plane, Planes, Samples, sides};
-use crate::contour::implicit_surface::Surface;
-use crate::geom::quadric::{along, distance2, dot};
+use super::probe::SurfaceProbe;
+use super::tangent_planes::{HermiteSamples, MeetingPlanes, Normals, SAME_FACE, TangentPlane};
+use glam::DVec3;
 
-type Point = [f64; 3];
+/// The farthest that a feature is looked for outside of its cell, in voxels.
+///
+/// The tip of a wedge of 22 degrees is 2.5 voxels from where it is a voxel thick.
+pub const MAX_FEATURE_REACH: f64 = 2.5;
 
-/// How far outside of its cell a feature is looked for, in voxels. The tip of a wedge of 22 degrees is 2.5 voxels
-/// from where it is a voxel thick.
-pub const REACH: f64 = 2.5;
+/// The distance beside the crease at which its faces are sampled at first, in voxels. Later steps take
+/// twice the last movement, but no more than this.
+const FIRST_OFFSET: f64 = 0.2;
 
-/// How far beside the crease its sides are asked, in voxels, to begin with; then twice the last step, but at
-/// least the second value, so that rounding does not decide which side answers.
-const BESIDE: [f64; 2] = [0.2, 1e-3];
+/// The least distance beside the crease at which its faces are sampled, in voxels, so that rounding does
+/// not decide which face answers.
+const LEAST_OFFSET: f64 = 1e-3;
 
-/// Rounds of asking beside a crease. Flat sides need one, curved ones three.
-const ROUNDS: usize = 5;
+/// The most rounds of samples beside a crease. Flat faces need one, curved ones three.
+const SAMPLE_ROUNDS: usize = 5;
 
-/// Pieces that are followed, with a question each: two of three features need one, one in thirty more than two. Where
-/// more are needed the sides have many pieces, and it is better to ask for them.
-const PIECES: usize = 3;
+/// The most sets of triangles that are followed, with one sample each.
+///
+/// Two of three features need one, one in thirty more than two. Where more are needed the faces have many
+/// triangles, and it is better to sample beside the crease.
+const TRIANGLE_SETS: usize = 3;
 
-/// Steps to where pieces meet. Flat pieces need one, curved ones three.
-const PIECE_STEPS: usize = 6;
+/// The most steps to the point in which the surfaces of triangles meet. Flat ones need one, curved ones
+/// three.
+const TRIANGLE_STEPS: usize = 6;
 
-/// Steps along gradients end at this distance, in voxels.
-const EXACTLY: f64 = 1e-6;
+/// The distance at which steps along gradients end, in voxels.
+const GRADIENT_CONVERGED: f64 = 1e-6;
 
-/// Steps along gradients.
-const STEPS: usize = 12;
+/// The most steps along gradients.
+const GRADIENT_STEPS: usize = 12;
 
-/// A place that moved by less than this in a step, in voxels, stays: by asking, and by pieces, where a step costs little.
-/// The steps shrink quadratically, so what is left is far less.
-const STAYS: [f64; 2] = [5e-3, 1e-3];
+/// The step length, in voxels, at which the search with samples of the surface stops.
+///
+/// Convergence is quadratic, so the remaining error is far smaller.
+const SAMPLES_CONVERGED: f64 = 5e-3;
 
-/// A place is on the surface when its distance is below this, in voxels.
+/// The step length, in voxels, at which the search with known triangles stops. Such a step costs no sample
+/// of the surface, so the bound is tighter than [`SAMPLES_CONVERGED`].
+const TRIANGLES_CONVERGED: f64 = 1e-3;
+
+/// The distance below which a point is on the surface, in voxels.
 const ON_SURFACE: f64 = 1e-3;
-
-/// Asks the surface in the coordinates of a cell, in voxels.
-pub struct Asker<'a> {
-    /// The surface.
-    pub surface: &'a dyn Surface,
-    /// The world position of the cell's lowest corner.
-    pub origin: Point,
-    /// Voxel size.
-    pub voxel: f64,
-    /// A piece near by; after a question the one that is closest. See [`Surface::at`].
-    pub piece: u32,
-}
-
-impl Asker<'_> {
-    /// Distance in voxels and gradient at `local`.
-    pub fn at(&mut self, local: Point) -> (f64, Point) {
-        let (distance, gradient) = self.surface.at(self.world(local), &mut self.piece);
-        (distance / self.voxel, gradient)
-    }
-
-    /// The plane at `local`, moved there along the gradient.
-    fn plane(&mut self, local: Point) -> Plane {
-        let (distance, normal) = self.at(local);
-        Plane { anchor: along(local, -distance, normal), normal, piece: self.piece }
-    }
-
-    /// The plane of a piece at `local`, moved there along the gradient.
-    fn plane_of(&self, piece: u32, local: Point) -> Plane {
-        let (distance, normal) = self.surface.piece_at(self.world(local), piece);
-        Plane { anchor: along(local, -distance / self.voxel, normal), normal, piece }
-    }
-
-    fn world(&self, local: Point) -> Point {
-        std::array::from_fn(|a| self.origin[a] + self.voxel * local[a])
-    }
-}
 
 /// A crease point or a corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Feature {
     /// The point of the feature that is nearest to the cell's crossings.
-    pub point: Point,
-    /// The unit normals of the sides that meet there, zero beyond the last one.
+    pub point: DVec3,
+    /// The unit normals of the faces that meet there, zero beyond the last one.
     pub normals: Normals,
 }
 
-/// Sheets whose normals differ by less, as the second eigenvalue of their error function over the largest, are
-/// not looked at: five crossings on one side and one on another at 18 degrees to it have 0.013.
-pub const SPREAD: f64 = 0.002;
+/// The spread of normals below which no feature is looked for: the second eigenvalue of the error function
+/// over the largest.
+///
+/// Five crossings on one face and one on another at 18 degrees to it have 0.013.
+pub const MIN_SPREAD: f64 = 0.002;
 
-/// The feature that a sheet with the given samples sees, if it sees one and the surface has it within reach of the
-/// cell. `minimiser` is the least point of the error function, `mean` the mean of the sample points.
-pub fn feature(ask: &mut Asker<'_>, samples: &Samples, minimiser: Point, mean: Point) -> Option<Feature> {
-    let seen = sides(samples, minimiser);
+/// Locates the feature that a sheet sees; `None` when it sees one face only, or the surface has no feature
+/// within reach of the cell.
+///
+/// `minimiser` is the least point of the sheet's error function, `mean` the mean of the sample points.
+pub fn locate_feature(
+    probe: &mut SurfaceProbe<'_>,
+    samples: &HermiteSamples,
+    minimiser: DVec3,
+    mean: DVec3,
+) -> Option<Feature> {
+    let seen = samples.cluster_by_normal(minimiser);
     if seen.slice().len() < 2 {
         return None;
     }
-    let (point, planes) = settle(ask, seen, mean)?;
+    let (point, planes) = converge(probe, seen, mean)?;
     Some(Feature { point, normals: planes.normals() })
 }
 
-/// The feature between the sides of the surface that are near the points `at`, around the origin.
-pub fn feature_between(ask: &mut Asker<'_>, at: impl Iterator<Item = Point>) -> Option<Point> {
-    let mut samples = Samples::default();
-    for p in at.take(12) {
-        let Plane { anchor, normal, piece } = ask.plane(p);
-        samples.push(anchor, normal, piece);
+/// Locates the feature around the origin between the faces of the surface that are near some points.
+pub fn feature_between(probe: &mut SurfaceProbe<'_>, points: impl Iterator<Item = DVec3>) -> Option<DVec3> {
+    let mut samples = HermiteSamples::default();
+    for p in points.take(12) {
+        let TangentPlane { anchor, normal, triangle } = probe.tangent_plane(p);
+        samples.push(anchor, normal, triangle);
     }
-    let seen = sides(&samples, [0.0; 3]);
+    let seen = samples.cluster_by_normal(DVec3::ZERO);
     if seen.slice().len() < 2 {
         return None;
     }
-    settle(ask, seen, [0.0; 3]).map(|(point, _)| point)
+    converge(probe, seen, DVec3::ZERO).map(|(point, _)| point)
 }
 
-/// The point of the surface that is reached from `from` along gradients, or the last one on the way. Between two
-/// sides the way goes to and fro.
-pub fn nearest(ask: &mut Asker<'_>, from: Point) -> Option<Point> {
+/// Steps along gradients from `from` to the surface, and returns the point there, or the nearest one on the
+/// way.
+///
+/// Between two faces the way goes to and fro, with shorter steps.
+pub fn project_to_surface(probe: &mut SurfaceProbe<'_>, from: DVec3) -> Option<DVec3> {
     let mut point = from;
-    let (mut distance, mut normal) = ask.at(point);
+    let (mut distance, mut normal) = probe.sample(point);
     let mut share = 1.0;
-    for _ in 0..STEPS {
-        if distance.abs() <= EXACTLY {
+    for _ in 0..GRADIENT_STEPS {
+        if distance.abs() <= GRADIENT_CONVERGED {
             break;
         }
-        let next = along(point, -share * distance, normal);
-        let (next_distance, next_normal) = ask.at(next);
+        let next = point + -share * distance * normal;
+        let (next_distance, next_normal) = probe.sample(next);
         if next_distance.abs() < distance.abs() {
             (point, distance, normal) = (next, next_distance, next_normal);
         } else {
@@ -143,68 +130,85 @@ pub fn nearest(ask: &mut Asker<'_>, from: Point) -> Option<Point> {
     is_within_reach(point).then_some(point)
 }
 
-/// Follows the planes to where they meet on the surface: by the pieces that they are of, or, where these lead away, by
-/// what the surface has beside the place where they meet.
-fn settle(ask: &mut Asker<'_>, planes: Planes, mean: Point) -> Option<(Point, Planes)> {
-    by_pieces(ask, planes, mean).or_else(|| by_asking(ask, planes, mean))
+/// Follows planes to the point of the surface in which they meet: by their triangles, or, where these lead
+/// away, by samples beside that point.
+fn converge(
+    probe: &mut SurfaceProbe<'_>,
+    planes: MeetingPlanes,
+    mean: DVec3,
+) -> Option<(DVec3, MeetingPlanes)> {
+    by_triangles(probe, planes, mean).or_else(|| by_samples(probe, planes, mean))
 }
 
-/// Follows the pieces of the planes to where they meet, and takes others where the surface has nearer ones, until that is
-/// on the surface.
-fn by_pieces(ask: &mut Asker<'_>, mut planes: Planes, mean: Point) -> Option<(Point, Planes)> {
-    for _ in 0..PIECES {
-        let point = meet_pieces(ask, &mut planes, mean)?;
-        let (distance, normal) = ask.at(point);
+/// Follows the triangles of the planes to the point in which their surfaces meet, and takes other triangles
+/// where the surface has nearer ones, until that point is on the surface.
+fn by_triangles(
+    probe: &mut SurfaceProbe<'_>,
+    mut planes: MeetingPlanes,
+    mean: DVec3,
+) -> Option<(DVec3, MeetingPlanes)> {
+    for _ in 0..TRIANGLE_SETS {
+        let point = meet_of_triangles(probe, &mut planes, mean)?;
+        let (distance, normal) = probe.sample(point);
         if distance.abs() <= ON_SURFACE {
             return Some((point, planes));
         }
-        let cosine = |p: &Plane| dot(p.normal, normal);
-        let side = planes.iter_mut().max_by(|a, b| cosine(a).total_cmp(&cosine(b)))?;
-        if cosine(side) <= ONE_SIDE || side.piece == ask.piece {
+        let cosine = |p: &TangentPlane| p.normal.dot(normal);
+        let face = planes.iter_mut().max_by(|a, b| cosine(a).total_cmp(&cosine(b)))?;
+        if cosine(face) <= SAME_FACE || face.triangle == probe.triangle {
             return None;
         }
-        *side = Plane { anchor: along(point, -distance, normal), normal, piece: ask.piece };
+        *face = TangentPlane { anchor: point + -distance * normal, normal, triangle: probe.triangle };
     }
     None
 }
 
-/// Asks the surface beside the place where the planes meet, until that is on the surface.
-fn by_asking(ask: &mut Asker<'_>, mut planes: Planes, mean: Point) -> Option<(Point, Planes)> {
+/// Samples the surface beside the point in which the planes meet, until that point is on the surface.
+fn by_samples(
+    probe: &mut SurfaceProbe<'_>,
+    mut planes: MeetingPlanes,
+    mean: DVec3,
+) -> Option<(DVec3, MeetingPlanes)> {
     let mut point = planes.meet(mean)?;
-    let mut beside = BESIDE[0];
-    for _ in 0..ROUNDS {
+    let mut offset = FIRST_OFFSET;
+    for _ in 0..SAMPLE_ROUNDS {
         if !is_within_reach(point) {
             return None;
         }
         for plane in planes.iter_mut() {
-            let back = along(plane.anchor, -1.0, point);
-            let length = dot(back, back).sqrt();
-            let step = if length > beside { beside / length } else { 1.0 };
-            *plane = ask.plane(along(point, step, back));
+            let back = plane.anchor - point;
+            let length = back.length();
+            let step = if length > offset { offset / length } else { 1.0 };
+            *plane = probe.tangent_plane(point + step * back);
         }
         let next = planes.meet(mean)?;
-        let moved = distance2(next, point).sqrt();
+        let moved = next.distance(point);
         point = next;
-        if moved < STAYS[0] {
+        if moved < SAMPLES_CONVERGED {
             break;
         }
-        beside = (2.0 * moved).clamp(BESIDE[1], BESIDE[0]);
+        offset = (2.0 * moved).clamp(LEAST_OFFSET, FIRST_OFFSET);
     }
     if !is_within_reach(point) {
         return None;
     }
-    let (distance, normal) = ask.at(point);
+    let (distance, normal) = probe.sample(point);
     if distance.abs() <= ON_SURFACE {
         return Some((point, planes));
     }
-    // A side that no crossing of the cell showed.
-    let third = Plane { anchor: along(point, -distance, normal), normal, piece: ask.piece };
-    corner(ask, &planes, third, mean)
+    // A face that no crossing of the cell showed.
+    let third = TangentPlane { anchor: point + -distance * normal, normal, triangle: probe.triangle };
+    corner(probe, &planes, third, mean)
 }
 
-/// Where a third plane ends the crease of two.
-fn corner(ask: &mut Asker<'_>, planes: &Planes, third: Plane, mean: Point) -> Option<(Point, Planes)> {
-    if planes.slice().iter().any(|p| dot(p.normal, third.normal) > ONE_SIDE) {
+/// Returns the corner in which a third plane ends the crease of two.
+fn corner(
+    probe: &mut SurfaceProbe<'_>,
+    planes: &MeetingPlanes,
+    third: TangentPlane,
+    mean: DVec3,
+) -> Option<(DVec3, MeetingPlanes)> {
+    if planes.slice().iter().any(|p| p.normal.dot(third.normal) > SAME_FACE) {
         return None;
     }
     let planes = planes.with(third)?;
@@ -212,31 +216,32 @@ fn corner(ask: &mut Asker<'_>, planes: &Planes, third: Plane, mean: Point) -> Op
     if !is_within_reach(point) {
         return None;
     }
-    let (distance, _) = ask.at(point);
+    let (distance, _) = probe.sample(point);
     (distance.abs() <= ON_SURFACE).then_some((point, planes))
 }
 
-/// Where the pieces of some planes meet, as near to `mean` as they do; `None` when no place stays. The planes become those of
-/// the pieces there.
-fn meet_pieces(ask: &Asker<'_>, planes: &mut Planes, mean: Point) -> Option<Point> {
+/// Returns the point in which the surfaces of the planes' triangles meet, as near to `mean` as they do;
+/// `None` when it does not converge. The planes become the tangent planes there.
+fn meet_of_triangles(probe: &SurfaceProbe<'_>, planes: &mut MeetingPlanes, mean: DVec3) -> Option<DVec3> {
     let mut point = planes.meet(mean)?;
-    for _ in 0..PIECE_STEPS {
+    for _ in 0..TRIANGLE_STEPS {
         if !is_within_reach(point) {
             return None;
         }
         for plane in planes.iter_mut() {
-            *plane = ask.plane_of(plane.piece, point);
+            *plane = probe.tangent_plane_of(plane.triangle, point);
         }
         let next = planes.meet(mean)?;
-        let moved = distance2(next, point);
+        let moved = next.distance_squared(point);
         point = next;
-        if moved < STAYS[1] * STAYS[1] {
+        if moved < TRIANGLES_CONVERGED * TRIANGLES_CONVERGED {
             return is_within_reach(point).then_some(point);
         }
     }
     None
 }
 
-fn is_within_reach(point: Point) -> bool {
-    point.iter().all(|x| (-REACH..=1.0 + REACH).contains(x))
+/// Whether a point, in voxels from the cell's lowest corner, is near enough to the cell.
+fn is_within_reach(point: DVec3) -> bool {
+    point.to_array().iter().all(|x| (-MAX_FEATURE_REACH..=1.0 + MAX_FEATURE_REACH).contains(x))
 }

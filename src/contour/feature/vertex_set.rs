@@ -1,13 +1,13 @@
 //! A set of vertices by number.
 
-/// A bit for each vertex; none is kept for an empty set.
+/// A set of vertices, a bit for each. Nothing is stored for an empty set.
 #[derive(Debug, Default)]
 pub struct VertexSet {
     words: Vec<u64>,
 }
 
 impl VertexSet {
-    /// The set of some of `vertices` vertices.
+    /// Makes the set of some of `vertices` vertices.
     pub fn new(numbers: impl ExactSizeIterator<Item = u32>, vertices: usize) -> VertexSet {
         if numbers.len() == 0 {
             return VertexSet::default();
@@ -19,13 +19,13 @@ impl VertexSet {
         VertexSet { words }
     }
 
-    /// The bits, 64 vertices to a word.
+    /// Returns the bits, 64 vertices to a word.
     #[inline]
     pub fn words(&self) -> &[u64] {
         &self.words
     }
 
-    /// Whether a vertex is in the set; vertices that were added to the mesh later are not.
+    /// Whether a vertex is in the set. Vertices that are added to the mesh later are not.
     #[inline]
     pub fn contains(&self, vertex: u32) -> bool {
         self.words.get(vertex as usize >> 6).is_some_and(|word| word >> (vertex & 63) & 1 == 1)

@@ -1,38 +1,41 @@
-//! What the surface was asked before: changes of a patch look at the same middles of edges again and again.
+//! Distances from the surface that were sampled before: changes of a patch look at the same middles of edges
+//! again and again.
 
-type Point = [f64; 3];
+use glam::DVec3;
 
-/// Answers that are kept: a patch asks for 50 points most of the time, and seldom for more than this.
-const KEPT: usize = 512;
+/// The number of slots. A patch samples 50 points most of the time, and seldom more than this.
+const SLOTS: usize = 512;
 
-/// Answers by point. Each point has one place, and what comes later takes it.
+/// Distances by point. Each point has one slot, and a later point takes it.
 #[derive(Clone, Debug)]
-pub struct Answers(Vec<(Point, f64)>);
+pub struct DistanceCache(Vec<(DVec3, f64)>);
 
-impl Answers {
-    /// None yet.
-    pub fn new() -> Answers {
+impl DistanceCache {
+    /// Makes an empty cache.
+    pub fn new() -> DistanceCache {
         // Nothing equals this point.
-        Answers(vec![([f64::NAN; 3], 0.0); KEPT])
+        DistanceCache(vec![(DVec3::NAN, 0.0); SLOTS])
     }
 
-    /// The answer for a point, which `ask` gives where it is not known: always the same one for the same point.
-    pub fn get(&mut self, p: Point, ask: impl FnOnce() -> f64) -> f64 {
-        let place = &mut self.0[place(p)];
-        if place.0 != p {
-            *place = (p, ask());
+    /// Returns the distance of a point, by `sample` where it is not known: always the same one for the same
+    /// point.
+    pub fn get(&mut self, p: DVec3, sample: impl FnOnce() -> f64) -> f64 {
+        let slot = &mut self.0[slot(p)];
+        if slot.0 != p {
+            *slot = (p, sample());
         }
-        place.1
+        slot.1
     }
 }
 
-fn place(p: Point) -> usize {
+/// Returns the slot of a point.
+fn slot(p: DVec3) -> usize {
     /// 2^64 divided by the golden ratio: odd, and no pattern in its bits.
     const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;
-    // Zeros of either sign are one number, so they have one place.
-    let mixed =
-        p.iter().fold(0, |hash: u64, x| (hash.rotate_left(23) ^ (x + 0.0).to_bits()).wrapping_mul(FACTOR));
-    (mixed >> 32) as usize % KEPT
+    // Zeros of either sign are one number, so they have one slot.
+    let mix = |hash: u64, x: f64| (hash.rotate_left(23) ^ (x + 0.0).to_bits()).wrapping_mul(FACTOR);
+    let mixed = p.to_array().into_iter().fold(0, mix);
+    (mixed >> 32) as usize % SLOTS
 }
 
 #[cfg(test)]
@@ -40,13 +43,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_point_is_asked_once_until_its_place_is_taken() {
-        let mut answers = Answers::new();
-        let mut asked = 0;
-        let mut get = |p: Point, answer: f64| {
-            answers.get(p, || {
-                asked += 1;
-                answer
+    fn a_point_is_sampled_once_until_its_slot_is_taken() {
+        let mut cache = DistanceCache::new();
+        let mut sampled = 0;
+        let mut get = |p: [f64; 3], distance: f64| {
+            cache.get(p.into(), || {
+                sampled += 1;
+                distance
             })
         };
         assert_eq!(get([1.0, 2.0, 3.0], 5.0), 5.0);
@@ -58,6 +61,6 @@ mod tests {
             assert_eq!(get(p, f64::from(n)), f64::from(n));
             assert_eq!(get(p, -1.0), f64::from(n));
         }
-        assert_eq!(asked, 10_002);
+        assert_eq!(sampled, 10_002);
     }
 }

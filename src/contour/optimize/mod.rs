@@ -1,4 +1,4 @@
-//! Changes of the finished mesh: features recovered, and a tolerance kept, by edits that an exact test allows.
+//! Edits of the finished mesh: features recovered outside of their cells, and a tolerance kept.
 
 mod collapse;
 mod distance_cache;
@@ -8,6 +8,6 @@ mod patch;
 mod schedule;
 mod tolerance;
 
-pub use feature_recovery::{STAGES as RECOVERY_STAGES, recover};
+pub use feature_recovery::{RECOVERY_PASSES, recover};
 pub use schedule::{BORDER_LEAVES, MAX_TRIANGLE_REACH};
-pub use tolerance::{STAGES as TOLERANCE_STAGES, refine};
+pub use tolerance::{TOLERANCE_PASSES, refine};

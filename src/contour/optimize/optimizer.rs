@@ -1,110 +1,138 @@
-//! Changes of a finished mesh that bring it nearer to the surface: which to try. Whether they are made decides the
-//! exact test of `patch`.
+//! Local edits (moves, flips, splits) that bring the finished mesh closer to the surface.
+//!
+//! `patch` applies an edit only if an exact test shows that the mesh stays free of intersections.
 
-use super::distance_cache::Answers;
+use super::distance_cache::DistanceCache;
 use super::patch::{Patch, PatchEdge, PatchTriangle};
-use crate::contour::feature::{Asker, Features, Sides, VertexSet, feature_between, nearest};
-use crate::contour::implicit_surface::Surface;
+use crate::contour::feature::{
+    CreasePlanes, FeatureMap, SurfaceProbe, VertexSet, feature_between, project_to_surface,
+};
+use crate::contour::implicit_surface::ImplicitSurface;
 use crate::contour::rounded_lattice::RoundedLattice;
 use crate::contour::vertex::Cells;
-use crate::geom::quadric::{cross, dot};
+use glam::DVec3;
 
-type Point = [f64; 3];
-
-/// Edges whose triangles' normals differ by less than this (cosine of 5 degrees) are not worth flipping.
+/// The cosine between the normals of an edge's triangles above which the edge is not worth flipping
+/// (5 degrees).
 const FLAT: f64 = 0.996;
 
-/// Edges whose middle is nearer to the surface than this, in voxels, stay.
+/// The distance of an edge's middle from the surface, in voxels, below which the edge stays.
 const GOOD_EDGE: f64 = 0.01;
 
-/// Points that are nearer than this, in voxels, to the sides that features nearby know are not asked about.
+/// The distance of a point from the crease planes nearby, in voxels, below which the surface is not sampled.
 const SURE: f64 = 0.01;
 
-/// A flip must bring the middle of the edge nearer by this factor.
-const GAIN: f64 = 0.5;
+/// The factor by which a flip must bring the middle of the edge nearer.
+const FLIP_GAIN: f64 = 0.5;
 
-/// A place is taken when a vertex is as near as this, in voxels.
+/// The distance of a vertex from a point, in voxels, below which the point is taken.
 const TAKEN: f64 = 0.01;
 
-/// Shares of the way to its place that the vertex of a split goes: another triangle can be in its way.
+/// The shares of the way to its target that the vertex of a split tries: a triangle can be in the way.
 const SHARES: [f64; 4] = [1.0, 0.75, 0.5, 0.25];
 
-/// A part of the way must bring the vertex of a split nearer by this factor.
-const GOOD_PART: f64 = 0.8;
+/// The factor by which a part of the way must bring the vertex of a split nearer.
+const PART_GAIN: f64 = 0.8;
 
-/// The most splits that come of one vertex. Where the surface jumps, splits do not bring it nearer, and would go on
-/// without end.
-const MOST_SPLITS: u64 = 12;
+/// The most splits around one vertex and around those that it adds.
+///
+/// Where the surface jumps, splits do not bring the mesh nearer, and would go on without end.
+const MAX_SPLITS: u64 = 12;
 
-/// A patch with the surface that it shall come near to.
-pub struct Editor<'a> {
-    /// The part of the mesh.
-    pub patch: Patch,
-    /// The surface.
-    pub surface: &'a dyn Surface,
-    /// The lattice, for its precision.
-    pub lattice: &'a RoundedLattice,
-    /// The vertices on creases and corners.
-    pub features: &'a Features,
-    /// The vertices where the sign jumps.
-    pub jumps: &'a VertexSet,
-    /// Triangles, edges and vertices that are farther from the surface, in voxels, are split and moved.
-    pub tolerance: f64,
-    /// Whether what the features nearby say is enough where they say that the surface is near.
-    pub trusting: bool,
-    /// See [`Surface::at`].
-    pub piece: u32,
-    /// How far points are from the surface, in voxels.
-    pub answers: Answers,
-    /// Splits that may still be made.
-    pub splits_left: u64,
-    /// Vertices whose splits ended at a limit.
-    pub given_up: u64,
+/// The limit of flips around one vertex. Every flip brings the mesh nearer; the limit is for rounding.
+const MAX_FLIPS: u64 = 8;
+
+/// Whether the crease planes nearby can decide that a point is near the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ErrorSource {
+    /// Crease planes first, then the surface.
+    CreasePlanes,
+    /// The surface alone.
+    Surface,
 }
 
-impl<'a> Editor<'a> {
-    /// An editor of a patch of the mesh of `cells`. See the fields.
+/// The point at which a triangle is farthest from the surface.
+#[derive(Clone, Copy, Debug)]
+pub struct FarthestPoint {
+    /// The edge in whose middle the point lies, 0 to 2; `None` for the centre of the triangle.
+    edge: Option<usize>,
+    point: DVec3,
+    /// The distance from the surface, in voxels.
+    error: f64,
+}
+
+/// Optimises a patch of the mesh by local edits.
+pub struct PatchOptimizer<'a> {
+    /// The part of the mesh.
+    pub patch: Patch,
+    /// The lattice, for the voxel size and the precision.
+    pub lattice: &'a RoundedLattice,
+    /// The vertices on creases and corners.
+    pub features: &'a FeatureMap,
+    /// The vertices of cells in which the sign jumps.
+    pub jumps: &'a VertexSet,
+    /// The distance from the surface, in voxels, above which triangles and edges are split, and vertices
+    /// moved.
+    pub tolerance: f64,
+    /// The number of splits that may still be made.
+    pub splits_left: u64,
+    /// The number of vertices whose splits ended at a limit.
+    pub given_up: u64,
+    surface: &'a dyn ImplicitSurface,
+    source: ErrorSource,
+    /// The closest triangle of the last sample.
+    hint: u32,
+    /// Distances from the surface, in voxels.
+    distances: DistanceCache,
+}
+
+impl<'a> PatchOptimizer<'a> {
+    /// Makes an optimizer for a patch of the mesh of `cells`, with a tolerance in voxels.
     pub fn new(
         patch: Patch,
-        surface: &'a dyn Surface,
+        surface: &'a dyn ImplicitSurface,
         cells: &'a Cells<'_>,
         tolerance: f64,
-        trusting: bool,
-    ) -> Editor<'a> {
-        let (lattice, features, jumps) = (&cells.context.lattice, &cells.features, &cells.jumps);
-        let (piece, answers, splits_left, given_up) = (0, Answers::new(), u64::MAX, 0);
-        Editor {
+        source: ErrorSource,
+    ) -> PatchOptimizer<'a> {
+        PatchOptimizer {
             patch,
-            surface,
-            lattice,
-            features,
-            jumps,
+            lattice: &cells.context.lattice,
+            features: &cells.features,
+            jumps: &cells.jumps,
             tolerance,
-            trusting,
-            piece,
-            answers,
-            splits_left,
-            given_up,
+            splits_left: u64::MAX,
+            given_up: 0,
+            surface,
+            source,
+            hint: 0,
+            distances: DistanceCache::new(),
         }
     }
 }
 
-impl Editor<'_> {
-    /// Where a vertex that is far from the surface would be on it.
-    pub fn place_on_surface(&mut self, vertex: u32) -> Option<Point> {
-        let origin = self.patch.position(vertex)?;
-        let mut ask = Asker { surface: self.surface, origin, voxel: self.voxel(), piece: self.piece };
-        let is_far = ask.at([0.0; 3]).0.abs() > self.tolerance;
-        let place = if is_far { nearest(&mut ask, [0.0; 3]) } else { None };
-        self.piece = ask.piece;
-        place.map(|p| self.lattice.round(std::array::from_fn(|i| origin[i] + self.voxel() * p[i])))
+impl<'a> PatchOptimizer<'a> {
+    /// Returns a probe of the surface around a point.
+    fn probe(&self, origin: DVec3) -> SurfaceProbe<'a> {
+        SurfaceProbe { surface: self.surface, origin, voxel: self.voxel(), triangle: self.hint }
     }
 
-    /// Flips edges at and around a vertex that cut through the solid or the air beside a crease.
+    /// Returns the rounded point of the surface near a vertex that is far from the surface; `None` for other
+    /// vertices.
+    pub fn surface_target(&mut self, vertex: u32) -> Option<[f64; 3]> {
+        let origin = DVec3::from(self.patch.position(vertex)?);
+        let mut probe = self.probe(origin);
+        let is_far = probe.sample(DVec3::ZERO).0.abs() > self.tolerance;
+        let target = if is_far { project_to_surface(&mut probe, DVec3::ZERO) } else { None };
+        self.hint = probe.triangle;
+        target.map(|p| self.lattice.round(origin + self.voxel() * p))
+    }
+
+    /// Flips edges at and around a vertex that cut through the solid or the air beside a crease. Returns the
+    /// number of flips.
     pub fn flip_around(&mut self, vertex: u32) -> u64 {
         let mut flipped = 0;
-        // Every flip brings the surface nearer; the limit is for rounding.
-        while flipped < 8 {
+        while flipped < MAX_FLIPS {
             let edges = self.patch.edges_around(vertex);
             let Some(()) = edges.iter().find_map(|edge| self.flip(edge)) else { break };
             flipped += 1;
@@ -117,27 +145,27 @@ impl Editor<'_> {
         if is_flat(edge) {
             return None;
         }
-        let sides = self.features.sides([a, b, c, d].map(|v| v.0).into_iter());
-        let now = self.error(middle(a.1, b.1), &sides);
+        let planes = self.features.crease_planes([a, b, c, d].map(|v| v.0).into_iter());
+        let now = self.error(middle(a.1, b.1), &planes);
         if now < GOOD_EDGE {
             return None;
         }
-        let then = self.error(middle(c.1, d.1), &Sides::NONE);
-        (then < GAIN * now && self.patch.try_flip(edge)).then_some(())
+        let then = self.error(middle(c.1, d.1), &CreasePlanes::NONE);
+        (then < FLIP_GAIN * now && self.patch.try_flip(edge)).then_some(())
     }
 
-    /// Splits the triangles at a vertex, and their edges, where they are far from the surface, and what came of that
-    /// again.
+    /// Splits the triangles at a vertex, and their edges, where they are far from the surface, then the
+    /// triangles at the vertices that this adds. Returns the number of splits.
     pub fn split_around(&mut self, vertex: u32) -> u64 {
         let mut split = 0;
         let mut vertices = vec![vertex];
         let mut next = 0;
         while let Some(&vertex) = vertices.get(next) {
             next += 1;
-            let mut open = self.patch.star(vertex);
-            while let Some(n) = open.pop() {
+            let mut pending = self.patch.star(vertex);
+            while let Some(n) = pending.pop() {
                 let Some(worst) = self.worst(n) else { continue };
-                if split == MOST_SPLITS || self.splits_left == 0 {
+                if split == MAX_SPLITS || self.splits_left == 0 {
                     self.given_up += 1;
                     return split;
                 }
@@ -146,7 +174,7 @@ impl Editor<'_> {
                 self.splits_left -= 1;
                 vertices.push(new);
                 self.flip_around(new);
-                open.retain(|&n| self.patch.triangle_at(n).vertices.contains(&vertex));
+                pending.retain(|&n| self.patch.triangle_at(n).vertices.contains(&vertex));
             }
         }
         split
@@ -157,55 +185,59 @@ impl Editor<'_> {
         self.patch.star(vertex).into_iter().any(|n| self.worst(n).is_some())
     }
 
-    /// Where a triangle is farthest from the surface, if that is beyond the tolerance and not where the sign jumps: the number
-    /// of a side or 3 for its centre, and the place.
-    pub fn worst(&mut self, n: usize) -> Option<(usize, Point)> {
+    /// Returns the point at which a triangle is farthest from the surface, if that is beyond the tolerance
+    /// and the sign does not jump there.
+    pub fn worst(&mut self, n: usize) -> Option<FarthestPoint> {
         if self.jumps.contains_any(self.patch.triangle_at(n).vertices) {
             return None;
         }
-        let (worst, place, error) = self.farthest(n)?;
-        (error > self.tolerance).then_some((worst, place))
+        self.farthest(n).filter(|farthest| farthest.error > self.tolerance)
     }
 
     /// Whether a triangle is farther from the surface than the tolerance.
     pub fn is_beyond(&mut self, n: usize) -> bool {
-        self.farthest(n).is_some_and(|(_, _, error)| error > self.tolerance)
+        self.farthest(n).is_some_and(|farthest| farthest.error > self.tolerance)
     }
 
-    /// Where a triangle is farthest from the surface, and how far.
-    fn farthest(&mut self, n: usize) -> Option<(usize, Point, f64)> {
+    /// Returns the farthest of the points of a triangle that are looked at: the middles of its edges, and its
+    /// centre.
+    fn farthest(&mut self, n: usize) -> Option<FarthestPoint> {
         let t = *self.patch.triangle_at(n);
-        let [a, b, c] = t.corners;
-        let centre = std::array::from_fn(|i| (a[i] + b[i] + c[i]) / 3.0);
-        let places = [middle(a, b), middle(b, c), middle(c, a), centre];
-        let sides = self.sides(&t);
-        let errors = places.map(|p| self.error(p, &sides));
+        let [a, b, c] = t.corners.map(DVec3::from);
+        let points = [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), (a + b + c) / 3.0];
+        let planes = self.crease_planes(&t);
+        let errors = points.map(|p| self.error(p, &planes));
         let worst = (0..4).max_by(|&i, &j| errors[i].total_cmp(&errors[j]))?;
-        Some((worst, places[worst], errors[worst]))
+        let edge = (worst < 3).then_some(worst);
+        Some(FarthestPoint { edge, point: points[worst], error: errors[worst] })
     }
 
-    /// Splits a triangle, or an edge of it, where it is farthest from the surface as [`worst`](Self::worst) says, or merges the
-    /// ends of an edge if that is not possible. Returns the vertex around which the triangles are others now.
-    pub fn improve(&mut self, n: usize, (worst, from): (usize, Point)) -> Option<u32> {
-        self.split(n, worst, from).or_else(|| self.mend(n))
+    /// Splits a triangle, or an edge of it, where it is farthest from the surface, or collapses an edge of it
+    /// if that is not possible. Returns the vertex around which the triangles have changed.
+    pub fn improve(&mut self, n: usize, farthest: FarthestPoint) -> Option<u32> {
+        self.split(n, farthest).or_else(|| self.collapse_to_improve(n))
     }
 
-    fn split(&mut self, n: usize, worst: usize, from: Point) -> Option<u32> {
-        let [a, b, c] = self.patch.triangle_at(n).corners;
-        let edge = if worst < 3 { self.patch.edge(n, worst) } else { None };
-        let around: Vec<Point> = match &edge {
+    fn split(&mut self, n: usize, farthest: FarthestPoint) -> Option<u32> {
+        let from = farthest.point;
+        let edge = farthest.edge.and_then(|k| self.patch.edge(n, k));
+        let around: Vec<[f64; 3]> = match &edge {
             Some(edge) => vec![edge.a.1, edge.b.1, edge.c.1, edge.d.1],
-            None => vec![a, b, c],
+            None => self.patch.triangle_at(n).corners.into(),
         };
-        let targets = self.surface_points(from, &around);
+        let targets = self.split_targets(from, &around);
         for (share, target) in SHARES.into_iter().flat_map(|share| targets.map(|target| (share, target))) {
             let Some(target) = target else { continue };
-            let target = self.lattice.round(mix(from, target, share));
+            let target = self.lattice.round(from + share * (target - from));
             // Part of the way to a crease can lead away from the surface.
-            if share < 1.0 && self.error(target, &Sides::NONE) > GOOD_PART * self.error(from, &Sides::NONE) {
-                continue;
+            if share < 1.0 {
+                let planes = CreasePlanes::NONE;
+                let then = self.error(target.into(), &planes);
+                if then > PART_GAIN * self.error(from, &planes) {
+                    continue;
+                }
             }
-            if self.patch.is_taken(target, TAKEN * self.voxel(), u32::MAX) {
+            if self.patch.is_taken(target, TAKEN * self.voxel()) {
                 continue;
             }
             let new = match &edge {
@@ -219,52 +251,55 @@ impl Editor<'_> {
         None
     }
 
-    /// Points of the surface near `from`: the crease or corner between the sides that are seen from there towards
-    /// the points around, and the next point at all.
-    fn surface_points(&mut self, from: Point, around: &[Point]) -> [Option<Point>; 2] {
-        let mut ask = Asker { surface: self.surface, origin: from, voxel: self.voxel(), piece: self.piece };
-        let towards = around.iter().map(|p| std::array::from_fn(|i| 0.5 * (p[i] - from[i]) / self.voxel()));
-        let crease = feature_between(&mut ask, towards);
-        let next = nearest(&mut ask, [0.0; 3]);
-        self.piece = ask.piece;
-        let world = |p: Point| std::array::from_fn(|i| from[i] + self.voxel() * p[i]);
-        [crease.map(world), next.map(world)]
+    /// Returns points of the surface near `from`: the crease or corner between the smooth faces that are seen
+    /// from there towards the points around, and the point that gradients lead to.
+    fn split_targets(&mut self, from: DVec3, around: &[[f64; 3]]) -> [Option<DVec3>; 2] {
+        let voxel = self.voxel();
+        let mut probe = self.probe(from);
+        let towards = around.iter().map(|&p| 0.5 * (DVec3::from(p) - from) / voxel);
+        let crease = feature_between(&mut probe, towards);
+        let next = project_to_surface(&mut probe, DVec3::ZERO);
+        self.hint = probe.triangle;
+        [crease, next].map(|local| local.map(|p| from + voxel * p))
     }
 
-    /// What the features at the corners of a triangle know of the surface, if that is enough.
-    pub fn sides(&self, t: &PatchTriangle) -> Sides {
-        if self.trusting { self.features.sides(t.vertices.into_iter()) } else { Sides::NONE }
+    /// Returns the planes of the features at the vertices of a triangle, if they may decide.
+    pub fn crease_planes(&self, t: &PatchTriangle) -> CreasePlanes {
+        match self.source {
+            ErrorSource::CreasePlanes => self.features.crease_planes(t.vertices.into_iter()),
+            ErrorSource::Surface => CreasePlanes::NONE,
+        }
     }
 
-    fn voxel(&self) -> f64 {
+    /// Returns the voxel size in model units.
+    pub fn voxel(&self) -> f64 {
         self.lattice.voxel()
     }
 
-    /// The distance of a point from the surface, in voxels, if that can be more than [`SURE`] by what the sides of
-    /// features near it say; else 0.
-    pub fn error(&mut self, p: Point, sides: &Sides) -> f64 {
-        if !sides.is_empty() && sides.distance(p) < SURE * self.voxel() {
+    /// Returns the distance of a point from the surface, in voxels; 0 where it is less than [`SURE`] by the
+    /// crease planes near the point.
+    pub fn error(&mut self, p: DVec3, planes: &CreasePlanes) -> f64 {
+        if !planes.is_empty() && planes.distance(p.to_array()) < SURE * self.voxel() {
             return 0.0;
         }
-        let voxel = self.voxel();
-        self.answers.get(p, || self.surface.at(p, &mut self.piece).0.abs() / voxel)
+        let (surface, hint, voxel) = (self.surface, &mut self.hint, self.lattice.voxel());
+        self.distances.get(p, || {
+            let sample = surface.sample(p, *hint);
+            *hint = sample.triangle;
+            sample.distance.abs() / voxel
+        })
     }
 }
 
-/// The point at `share` of the way from `a` to `b`.
-pub fn mix(a: Point, b: Point, share: f64) -> Point {
-    std::array::from_fn(|i| a[i] + share * (b[i] - a[i]))
+/// Returns the middle of a segment.
+pub fn middle(a: [f64; 3], b: [f64; 3]) -> DVec3 {
+    0.5 * (DVec3::from(a) + DVec3::from(b))
 }
 
-/// The middle of a segment.
-pub fn middle(p: Point, q: Point) -> Point {
-    std::array::from_fn(|i| 0.5 * (p[i] + q[i]))
-}
-
+/// Whether the triangles of an edge have nearly the same normal.
 fn is_flat(edge: &PatchEdge) -> bool {
-    let PatchEdge { a, b, c, d, .. } = edge;
-    let minus = |p: Point, q: Point| -> Point { std::array::from_fn(|i| p[i] - q[i]) };
-    let along = minus(b.1, a.1);
-    let (n, m) = (cross(along, minus(c.1, a.1)), cross(minus(d.1, a.1), along));
-    dot(n, m) > FLAT * (dot(n, n) * dot(m, m)).sqrt()
+    let [a, b, c, d] = [edge.a, edge.b, edge.c, edge.d].map(|v| DVec3::from(v.1));
+    let along = b - a;
+    let (n, m) = (along.cross(c - a), (d - a).cross(along));
+    n.dot(m) > FLAT * (n.length_squared() * m.length_squared()).sqrt()
 }

@@ -5,7 +5,7 @@
 
 use super::patch::{Bounds, Patch};
 use crate::band::LeafId;
-use crate::contour::feature::REACH;
+use crate::contour::feature::MAX_FEATURE_REACH;
 use crate::contour::mesh::{AXIS_STRIDE, CHANGED, Changes, LeafMesh, NEW_VERTEX};
 use crate::contour::vertex::CellContext;
 use crate::lattice::{Ijk, LEAF_DIM};
@@ -14,9 +14,9 @@ use rayon::prelude::*;
 
 /// The reach of the triangles at the vertices of a leaf beyond the leaf, in voxels.
 ///
-/// The other vertices of these triangles lie in the next cells, or up to [`REACH`] outside of those. Two
+/// The other vertices of these triangles lie in the next cells, or up to [`MAX_FEATURE_REACH`] outside of those. Two
 /// leaves with another one between them are 8 voxels apart, more than twice this.
-const LEAF_MARGIN: f64 = 1.0 + REACH;
+const LEAF_MARGIN: f64 = 1.0 + MAX_FEATURE_REACH;
 
 const _: () =
     assert!(2.0 * LEAF_MARGIN < LEAF_DIM as f64, "leaves of one round must not touch the same triangles");

@@ -4,13 +4,14 @@ use super::edge_polygon::{EdgePolygon, for_polygons, on_axis};
 use super::triangulate::{Cut, EDGE_VERTEX, Fit, polygonize};
 use crate::band::LeafId;
 use crate::contour::error::{ContourError, TooManyVertices};
-use crate::contour::feature::Asker;
+use crate::contour::feature::SurfaceProbe;
 use crate::contour::mesh::{AXIS_STRIDE, LeafMesh, TriangleBuffer, TriangleSlots, VertexRun, split_slices};
 use crate::contour::settings::CutMethod;
 use crate::contour::statistics::ContourStatistics;
 use crate::contour::vertex::{Cells, FaceVertices, is_missing};
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, PhaseGuard, SHARE};
+use glam::DVec3;
 use rayon::prelude::*;
 
 /// What is found of the polygons around the crossed edges that start in one leaf, besides their triangles.
@@ -152,25 +153,25 @@ fn in_leaf(
         faces,
         vertices,
         leaf,
-        |EdgePolygon { polygon, envelope, fit, piece, node, number, along, is_jump }| {
+        |EdgePolygon { polygon, envelope, fit, triangle, node, number, along, is_jump }| {
             let size = sizes.next();
             if is_partial && polygon.corners().iter().any(|corner| is_missing(corner.position)) {
                 return;
             }
             triangles.clear();
             let cut = polygonize(polygon, &envelope, &fit, method, &mut triangles);
-            let hub = || lattice.between_walls(node, on_axis(along.0, lattice.clamp(along.1)));
+            let hub = || lattice.between_walls(node, on_axis(along.0, lattice.clamp_to_edge(along.1)));
             if let Some(surface) = cells.context.surface
                 && !is_jump
-                && !fit.sides.is_empty()
+                && !fit.crease_planes.is_empty()
             {
                 let corners = polygon.corners();
                 let position = |v| corners.iter().find(|c| c.vertex == v).map_or_else(hub, |c| c.position);
-                let mut ask = Asker { surface, origin: fit.point, voxel: lattice.voxel(), piece };
-                let far = is_far(&triangles, position, &fit, &mut ask);
+                let mut probe = SurfaceProbe { surface, origin: fit.point, voxel: lattice.voxel(), triangle };
+                let far = is_far(&triangles, position, &fit, &mut probe);
                 output.far.extend(corners.iter().filter_map(|corner| {
                     let is_feature = cells.features.get(corner.vertex).is_some();
-                    let is_far = far && is_feature || is_far_at(corner.position, &fit, &mut ask);
+                    let is_far = far && is_feature || is_far_at(corner.position, &fit, &mut probe);
                     (is_far && !cells.jumps.contains(corner.vertex)).then_some(corner.vertex)
                 }));
             }
@@ -196,29 +197,29 @@ fn in_leaf(
     output
 }
 
-/// Polygons with a place that is farther from the surface than this, in voxels, are looked at again.
+/// The distance from the surface, in voxels, beyond which a polygon is looked at again.
 const FAR: f64 = 0.025;
 
-/// Whether a point is far from the surface. What the features of the polygon say is asked first; the surface
-/// itself has the last word.
-fn is_far_at(p: [f64; 3], fit: &Fit<'_>, ask: &mut Asker) -> bool {
-    fit.sides.distance(p) > FAR * ask.voxel && {
-        let local = std::array::from_fn(|i| (p[i] - ask.origin[i]) / ask.voxel);
-        ask.at(local).0.abs() > FAR
+/// Whether a point is far from the surface.
+///
+/// The crease planes of the polygon are asked first. The surface itself has the last word.
+fn is_far_at(p: [f64; 3], fit: &Fit<'_>, probe: &mut SurfaceProbe<'_>) -> bool {
+    fit.crease_planes.distance(p) > FAR * probe.voxel && {
+        let local = (DVec3::from(p) - probe.origin) / probe.voxel;
+        probe.sample(local).0.abs() > FAR
     }
 }
 
-/// Whether the middle of a triangle or of one of its sides is far from the surface.
+/// Whether the middle of a triangle or of one of its edges is far from the surface.
 fn is_far(
     triangles: &[[u32; 3]],
     position: impl Fn(u32) -> [f64; 3],
     fit: &Fit<'_>,
-    ask: &mut Asker,
+    probe: &mut SurfaceProbe<'_>,
 ) -> bool {
     triangles.iter().any(|t| {
-        let [a, b, c] = t.map(&position);
-        let middle = |p: [f64; 3], q: [f64; 3]| std::array::from_fn(|i| 0.5 * (p[i] + q[i]));
-        let centre = std::array::from_fn(|i| (a[i] + b[i] + c[i]) / 3.0);
-        [centre, middle(a, b), middle(b, c), middle(c, a)].into_iter().any(|p| is_far_at(p, fit, ask))
+        let [a, b, c] = t.map(|v| DVec3::from(position(v)));
+        let points = [(a + b + c) / 3.0, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)];
+        points.into_iter().any(|p| is_far_at(p.to_array(), fit, probe))
     })
 }

@@ -5,7 +5,7 @@ use super::envelope::Envelope;
 use super::triangulate::{Cut, Fit, Polygon, polygonize};
 use crate::band::SignField;
 use crate::contour::error::ContourError;
-use crate::contour::feature::Sides;
+use crate::contour::feature::CreasePlanes;
 use crate::contour::settings::{ContourSettings, CutMethod};
 use crate::contour::vertex::{PlacedVertices, with_vertices};
 use crate::edge::Crossings;
@@ -57,8 +57,8 @@ pub fn cut_times<const N: usize>(
                 &vertices,
                 leaf,
                 |EdgePolygon { polygon, envelope, fit, .. }| {
-                    // Without a surface to ask there are no features, and no sides.
-                    polygons.push((*polygon, envelope, Fit { sides: &Sides::NONE, ..fit }));
+                    // Without a surface to ask there are no features, and no crease planes.
+                    polygons.push((*polygon, envelope, Fit { crease_planes: &CreasePlanes::NONE, ..fit }));
                 },
             );
             for (times, method) in times.iter_mut().zip(methods) {

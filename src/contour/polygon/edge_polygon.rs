@@ -5,10 +5,11 @@ use super::leaf_cells::LeafCells;
 use super::triangulate::{Fit, Polygon, PolygonCorner};
 use crate::band::LeafId;
 use crate::contour::cell::Edge;
-use crate::contour::feature::Sides;
+use crate::contour::feature::CreasePlanes;
 use crate::contour::vertex::{Cells, FaceVertices};
 use crate::edge::EdgeId;
 use crate::lattice::{Axis, Ijk, LEAF_DIM, bits};
+use glam::DVec3;
 
 /// The polygon around a crossed edge, and what decides how it is cut.
 #[derive(Clone, Copy, Debug)]
@@ -19,8 +20,8 @@ pub struct EdgePolygon<'a> {
     pub envelope: Envelope,
     /// The surface at the crossing.
     pub fit: Fit<'a>,
-    /// See [`Crossing::triangle`](crate::edge::Crossing).
-    pub piece: u32,
+    /// The triangle of the crossing ([`Crossing::triangle`](crate::edge::Crossing)).
+    pub triangle: u32,
     /// The edge's lower node.
     pub node: Ijk,
     /// The same, as its number in the leaf.
@@ -71,20 +72,20 @@ pub fn for_polygons(
             };
             fill(&mut polygon, &around, vertices, local, axis, outside);
             let sample = cells.context.crossings.sample(id);
-            let point = lattice.unrounded(node, on_axis(axis, sample.t));
+            let point = lattice.unrounded(node, on_axis(axis, sample.t).into());
             let corners = || polygon.corners().iter().map(|c| c.vertex);
-            // Most polygons are near no feature, and sides are large.
+            // Most polygons are near no feature, and crease planes are large.
             let found;
-            let sides = if cells.features.has_any(corners()) {
-                found = cells.features.sides(corners());
+            let planes = if cells.features.has_any(corners()) {
+                found = cells.features.crease_planes(corners());
                 &found
             } else {
-                &Sides::NONE
+                &CreasePlanes::NONE
             };
-            let fit = Fit::new(point, sample.normal.map(f64::from), sides, lattice.voxel());
-            let (piece, number) = (sample.triangle, number as u16);
+            let fit = Fit::new(point, DVec3::from(sample.normal.map(f64::from)), planes, lattice.voxel());
+            let (triangle, number) = (sample.triangle, number as u16);
             let (polygon, along, is_jump) = (&polygon, (axis, sample.t), sample.is_jump());
-            visit(EdgePolygon { polygon, envelope, fit, piece, node, number, along, is_jump });
+            visit(EdgePolygon { polygon, envelope, fit, triangle, node, number, along, is_jump });
         }
     }
 }

@@ -2,22 +2,26 @@
 
 use super::envelope::Envelope;
 use super::ju_udeshi;
-use crate::contour::feature::Sides;
+use crate::contour::feature::CreasePlanes;
 use crate::contour::settings::CutMethod;
-use crate::geom::quadric::dot;
+use glam::DVec3;
 
 /// Four cell vertices, and a face vertex between any two of them.
 const MAX_CORNERS: usize = 8;
 
-/// Diagonals whose distances to the surface differ by less than this, in voxels, are told apart by their
-/// lengths. On flat and gently curved parts the distances are noise of the size of the coordinates'
-/// rounding, and choosing by noise gives ragged meshes; a crease whose diagonals differ by less is not
-/// visible.
-const SAME_DISTANCE: f64 = 1e-4;
+/// The difference in distance from the tangent plane below which two diagonals count as equally good, in
+/// voxels. The shorter one is taken then.
+///
+/// On flat and gently curved parts the distances are noise of the size of the coordinates' rounding, and
+/// choosing by noise gives ragged meshes. A crease whose diagonals differ by less is not visible.
+const PLANE_TOLERANCE: f64 = 1e-4;
 
-/// The same for distances from sides that may be curved. At radii of 7 voxels the middle of a diagonal is up to
-/// this far from the planes at its ends.
-const SAME_AS_CURVED: f64 = 0.05;
+/// The difference in distance from the crease planes below which two diagonals count as equally good, in
+/// voxels.
+///
+/// The faces of a crease may be curved. At radii of 7 voxels the middle of a diagonal is up to this far from
+/// the planes at its ends.
+const CREASE_TOLERANCE: f64 = 0.05;
 
 /// A corner of a polygon.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -36,15 +40,15 @@ pub struct Polygon {
 }
 
 impl Polygon {
-    /// Gives it these four corners.
+    /// Sets four corners.
     #[inline]
     pub fn set_quad(&mut self, corners: [PolygonCorner; 4]) {
-        // Those beyond the last one mean nothing.
+        // Corners beyond the last one mean nothing.
         self.corners[..4].copy_from_slice(&corners);
         self.len = 4;
     }
 
-    /// Takes all corners out.
+    /// Removes all corners.
     #[inline]
     pub fn clear(&mut self) {
         self.len = 0;
@@ -57,7 +61,7 @@ impl Polygon {
         self.len += 1;
     }
 
-    /// The corners in order.
+    /// Returns the corners in order.
     #[inline]
     pub fn corners(&self) -> &[PolygonCorner] {
         &self.corners[..self.len]
@@ -68,7 +72,7 @@ impl Polygon {
         self.len -= 1;
     }
 
-    /// The triangle that cutting off corner `at` makes.
+    /// Returns the triangle that cutting off corner `at` makes.
     #[inline]
     fn ear(&self, at: usize) -> [PolygonCorner; 3] {
         let n = self.len;
@@ -76,51 +80,59 @@ impl Polygon {
     }
 }
 
-/// What is known of the surface around a crossed grid edge: its tangent plane at the crossing, and the sides of
-/// the creases that its cells see.
+/// The surface around a crossed grid edge: its tangent plane at the crossing, and the planes of the creases
+/// that the cells see.
 #[derive(Clone, Copy, Debug)]
 pub struct Fit<'a> {
-    /// The crossing, as it was given.
-    pub point: [f64; 3],
-    /// The unit normal there.
-    pub normal: [f64; 3],
-    /// The sides of creases nearby.
-    pub sides: &'a Sides,
-    /// Distances from the sides, and from the plane, that differ by less are equal.
-    pub tolerances: [f64; 2],
+    /// The crossing, unrounded.
+    pub point: DVec3,
+    /// The unit normal at the crossing.
+    pub normal: DVec3,
+    /// The planes of creases nearby.
+    pub crease_planes: &'a CreasePlanes,
+    /// The difference in distance from the crease planes below which two diagonals count as equally good, in
+    /// model units.
+    pub crease_tolerance: f64,
+    /// The same difference for the tangent plane, in model units.
+    pub plane_tolerance: f64,
 }
 
 impl<'a> Fit<'a> {
-    /// The surface at a crossing, on a lattice with the given voxel size.
-    pub fn new(point: [f64; 3], normal: [f64; 3], sides: &'a Sides, voxel: f64) -> Fit<'a> {
-        Fit { point, normal, sides, tolerances: [SAME_AS_CURVED * voxel, SAME_DISTANCE * voxel] }
+    /// Makes the fit for a crossing, on a lattice with the given voxel size in model units.
+    pub fn new(point: DVec3, normal: DVec3, crease_planes: &'a CreasePlanes, voxel: f64) -> Fit<'a> {
+        let (crease_tolerance, plane_tolerance) = (CREASE_TOLERANCE * voxel, PLANE_TOLERANCE * voxel);
+        Fit { point, normal, crease_planes, crease_tolerance, plane_tolerance }
     }
 
-    /// How badly a diagonal fits: how far its midpoint is from the sides, and from the tangent plane. A diagonal
-    /// along a crease lies in the planes on both sides of it; one across a crease cuts through the solid or the
-    /// air.
-    fn misfit(&self, [a, b]: [[f64; 3]; 2]) -> [f64; 2] {
-        let middle = std::array::from_fn(|i| 0.5 * (a[i] + b[i]));
-        let offset = std::array::from_fn(|i| middle[i] - self.point[i]);
-        let from_sides = if self.sides.is_empty() { 0.0 } else { self.sides.distance(middle) };
-        [from_sides, dot(self.normal, offset).abs()]
+    /// Returns the distances of a diagonal's midpoint from the crease planes and from the tangent plane, in
+    /// model units.
+    ///
+    /// A diagonal along a crease lies in the planes of both its faces. A diagonal across a crease cuts through
+    /// the solid or the air.
+    fn misfit(&self, diagonal: [[f64; 3]; 2]) -> (f64, f64) {
+        let [a, b] = diagonal.map(DVec3::from);
+        let middle = 0.5 * (a + b);
+        let planes = self.crease_planes;
+        let from_creases = if planes.is_empty() { 0.0 } else { planes.distance(middle.to_array()) };
+        (from_creases, self.normal.dot(middle - self.point).abs())
     }
 
-    /// Whether the diagonal `second` is better than `first`: closer to the surface, or as close and shorter.
+    /// Whether the diagonal `second` is closer to the surface than `first`, or as close and shorter.
     fn prefers(&self, second: [[f64; 3]; 2], first: [[f64; 3]; 2]) -> bool {
         let (a, b) = (self.misfit(first), self.misfit(second));
-        for i in 0..2 {
-            if (a[i] - b[i]).abs() > self.tolerances[i] {
-                return b[i] < a[i];
-            }
+        if (a.0 - b.0).abs() > self.crease_tolerance {
+            return b.0 < a.0;
+        }
+        if (a.1 - b.1).abs() > self.plane_tolerance {
+            return b.1 < a.1;
         }
         length2(second) < length2(first)
     }
 }
 
-fn length2([a, b]: [[f64; 3]; 2]) -> f64 {
-    let d = std::array::from_fn(|i| b[i] - a[i]);
-    dot(d, d)
+fn length2(diagonal: [[f64; 3]; 2]) -> f64 {
+    let [a, b] = diagonal.map(DVec3::from);
+    b.distance_squared(a)
 }
 
 /// How a polygon was cut.
@@ -235,7 +247,7 @@ mod tests {
             polygon.push(PolygonCorner { vertex, position });
         }
         let mut triangles = Vec::new();
-        let fit = Fit::new([0.0, 0.0, 0.5], normal, &Sides::NONE, 1.0);
+        let fit = Fit::new(DVec3::new(0.0, 0.0, 0.5), normal.into(), &CreasePlanes::NONE, 1.0);
         (polygonize(&polygon, &ENVELOPE, &fit, CutMethod::ConvexConcave, &mut triangles), triangles)
     }
 

@@ -1,7 +1,7 @@
 //! Sign fields and crossings from functions.
 
 use crate::band::SignField;
-use crate::contour::{ContourSettings, ContourStatistics, CutMethod, Precision, Surface, contour};
+use crate::contour::{ContourSettings, ContourStatistics, CutMethod, ImplicitSurface, Precision, contour};
 use crate::edge::{Crossing, Crossings, EdgeNumbers};
 use crate::lattice::{Axis, Ijk, LEAF_DIM, Lattice, LeafMask, Slab};
 use crate::mesh::TriMesh;
@@ -51,8 +51,8 @@ pub fn crossings(signs: &SignField, mut rule: impl FnMut(Ijk, Axis) -> Crossing)
 pub trait Implicit {
     /// Value and normal at a world position.
     fn at(&self, p: [f64; 3]) -> (f64, [f64; 3]);
-    /// The piece of the surface that makes the value, where it has several.
-    fn piece(&self, _: [f64; 3]) -> u32 {
+    /// Returns the face of the surface that makes the value, where it has several.
+    fn face(&self, _: [f64; 3]) -> u32 {
         0
     }
 }
@@ -81,7 +81,7 @@ pub fn sample(surface: &impl Implicit, n: i32, voxel: f64) -> (SignField, Crossi
         }
         let t = 0.5 * (a + b);
         let normal = value(node, axis, t).1.map(|x| x as f32);
-        Crossing { t, normal, triangle: surface.piece(world(node, axis, t)) }
+        Crossing { t, normal, triangle: surface.face(world(node, axis, t)) }
     });
     (field, crossings)
 }
@@ -123,7 +123,7 @@ pub fn run_with(
     voxel: f64,
     (precision, tolerance): (Precision, Option<f64>),
     threads: usize,
-    surface: &dyn Surface,
+    surface: &dyn ImplicitSurface,
 ) -> (TriMesh, ContourStatistics) {
     let run = RunSettings::with_threads(threads).unwrap();
     let settings = ContourSettings { precision, tolerance, ..ContourSettings::default() };

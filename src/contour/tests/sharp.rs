@@ -1,7 +1,7 @@
-//! Creases and corners of polyhedra, given as surfaces to ask.
+//! Creases and corners of polyhedra, given as surfaces to sample.
 
 use crate::contour::tests::fields::{Implicit, Random, run_with, sample};
-use crate::contour::{ContourStatistics, Creases, Precision, Surface};
+use crate::contour::{ContourStatistics, Creases, ImplicitSurface, Precision, SurfaceSample};
 use crate::mesh::TriMesh;
 use crate::verify::tests::audit::audit;
 use glam::{DQuat, DVec3};
@@ -14,7 +14,8 @@ struct Polyhedron {
 
 impl Polyhedron {
     fn value(&self, p: [f64; 3]) -> (f64, [f64; 3]) {
-        self.piece_at(p, self.piece(p))
+        let sample = self.sample(p.into(), 0);
+        (sample.distance, sample.gradient.to_array())
     }
 }
 
@@ -23,13 +24,13 @@ impl Implicit for Polyhedron {
         self.value(p)
     }
 
-    fn piece(&self, p: [f64; 3]) -> u32 {
+    fn face(&self, p: [f64; 3]) -> u32 {
         let heights = self.planes.iter().map(|(n, c)| n.dot(DVec3::from(p)) - c);
         (0..).zip(heights).max_by(|a, b| a.1.total_cmp(&b.1)).unwrap().0
     }
 }
 
-impl Surface for Polyhedron {
+impl ImplicitSurface for Polyhedron {
     fn creases(&self) -> Creases {
         if self.is_hollow { Creases::Concave } else { Creases::Convex }
     }
@@ -38,15 +39,14 @@ impl Surface for Polyhedron {
         0.0
     }
 
-    fn at(&self, p: [f64; 3], piece: &mut u32) -> (f64, [f64; 3]) {
-        *piece = self.piece(p);
-        self.piece_at(p, *piece)
+    fn sample(&self, p: DVec3, _: u32) -> SurfaceSample {
+        self.sample_triangle(p, self.face(p.to_array()))
     }
 
-    fn piece_at(&self, p: [f64; 3], piece: u32) -> (f64, [f64; 3]) {
-        let (normal, offset) = self.planes[piece as usize];
+    fn sample_triangle(&self, p: DVec3, triangle: u32) -> SurfaceSample {
+        let (normal, offset) = self.planes[triangle as usize];
         let sign = if self.is_hollow { -1.0 } else { 1.0 };
-        (sign * (normal.dot(DVec3::from(p)) - offset), (sign * normal).to_array())
+        SurfaceSample { distance: sign * (normal.dot(p) - offset), gradient: sign * normal, triangle }
     }
 }
 

@@ -1,37 +1,44 @@
-//! The vertex of a sheet: as close to the minimiser of its quadratic error function as its cell and its
-//! walls allow.
+//! The vertex of a sheet: as near to the minimiser of its quadratic error function as its cell and its walls
+//! allow.
 
 use super::feasible_region::Region;
 use crate::contour::cell::{Case, Edge, EdgeSet};
-use crate::contour::feature::{Asker, Feature, Normals, SPREAD, Samples, feature, nearest};
-use crate::contour::implicit_surface::Surface;
+use crate::contour::feature::{
+    Feature, HermiteSamples, MIN_SPREAD, Normals, SurfaceProbe, locate_feature, project_to_surface,
+};
+use crate::contour::implicit_surface::ImplicitSurface;
 use crate::contour::rounded_lattice::RoundedLattice;
 use crate::edge::Crossing;
-use crate::geom::quadric::{Minimiser, Qef, along};
+use crate::geom::quadric::{Minimiser, Qef};
 use crate::lattice::Ijk;
+use glam::DVec3;
 
-/// After rounding, a vertex keeps at least this share of the margin. The margin is 2 units in the last place
-/// or more, and rounding of the vertex and of the cell's walls takes half a unit each.
+/// The share of the margin that a vertex keeps after rounding.
+///
+/// The margin is 2 units in the last place or more, and rounding of the vertex and of the cell's walls takes
+/// half a unit each.
 const KEPT: f64 = 0.25;
 
-/// After rounding, a vertex keeps at least this share of the margin from its walls, where three coordinates
-/// are rounded.
+/// The share of the margin from its walls that a vertex keeps after rounding. Three coordinates are rounded
+/// there.
 const KEPT_AT_WALLS: f64 = 1.0 / 16.0;
 
-/// Halvings of the step from the start to the target before the start itself is taken.
+/// The number of halvings of the step from the start to the target before the start itself is taken.
 const HALVINGS: i32 = 12;
 
-/// Steps from the mean of the crossings to the mean of the midpoints of their edges.
+/// The number of steps from the mean of the crossings to the mean of the midpoints of their edges.
 const STEPS_TO_MIDDLE: i32 = 8;
 
-/// Planes that miss the minimiser by more than this, in voxels, do not meet: a side of the surface ends before.
-/// Spheres with a radius of 4 voxels have 0.04.
-pub const UNSURE: f64 = 0.035;
+/// The distance from the minimiser to a tangent plane above which the planes do not meet: a smooth face ends
+/// before. In voxels; spheres with a radius of 4 voxels have 0.04.
+pub const MAX_DISAGREEMENT: f64 = 0.035;
 
-/// Tangent planes of a sphere meet above it, by 1 / (6 r) voxels at a radius of r voxels and more in corners of
-/// cells. That is where the faces between the vertices, which cut through the sphere, are off the least on average:
-/// on the sphere itself their mean error would be 2.4 times as large. Higher than this, in voxels, is taken down.
-const HIGHEST: f64 = 0.03;
+/// The greatest height of a vertex above a smooth surface, in voxels. Higher vertices are taken down.
+///
+/// Tangent planes of a sphere meet above it, by 1 / (6 r) voxels at a radius of r voxels and more in corners
+/// of cells. That is where the triangles between the vertices, which cut through the sphere, are off the
+/// least on average. On the sphere itself their mean error would be 2.4 times as large.
+const MAX_HEIGHT: f64 = 0.03;
 
 /// Whether a vertex lies at the minimiser of its error function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,10 +49,10 @@ pub enum Placement {
     Clamped,
 }
 
-/// Stands for the position of a vertex that is not made: its cell lacks crossings ([`EdgeNumbers::is_partial`]). Nothing of the
-/// cell gets into the mesh.
+/// The position of a vertex that is not made, because its cell lacks crossings
+/// ([`EdgeNumbers::is_partial`]). Nothing of the cell gets into the mesh.
 ///
-/// [`EdgeNumbers::is_partial`]: crate::edge::EdgeNumbers::is_partial
+/// [`EdgeNumbers::is_partial`]: crate::edge::EdgeNumbers::is_open
 pub const MISSING: [f64; 3] = [f64::NAN; 3];
 
 /// Whether a position is [`MISSING`].
@@ -54,20 +61,20 @@ pub fn is_missing(position: [f64; 3]) -> bool {
     position[0].is_nan()
 }
 
-/// A vertex in its cell, and where it ought to be.
+/// A vertex in its cell, and the feature that it stands for.
 #[derive(Clone, Copy, Debug)]
-pub struct Placed {
+pub struct CellVertex {
     /// The position, rounded.
     pub position: [f64; 3],
-    /// Whether that is where the error function is least.
+    /// Whether that is the minimiser of the error function.
     pub placement: Placement,
-    /// The feature that it stands for, if there is one: the point, rounded, and the sides that meet there.
+    /// The feature, if there is one, with its point rounded.
     pub feature: Option<Feature>,
-    /// Whether the sign jumps at one of its crossings.
+    /// Whether the sign jumps at one of the crossings.
     pub is_jump: bool,
 }
 
-/// The position of the vertex of sheet number `sheet` of a cell. `crossing` gives the sample of each of the
+/// Places the vertex of sheet number `sheet` of a cell. `crossing` returns the crossing of each of the
 /// sheet's edges.
 pub fn place<'a>(
     lattice: &RoundedLattice,
@@ -75,56 +82,56 @@ pub fn place<'a>(
     case: &Case,
     sheet: usize,
     crossing: impl Fn(Edge) -> &'a Crossing,
-    surface: Option<&dyn Surface>,
-) -> Placed {
+    surface: Option<&dyn ImplicitSurface>,
+) -> CellVertex {
     let edges = case.sheets()[sheet].edges;
     let mut qef = Qef::default();
-    let mut samples = Samples::default();
-    let (mut piece, mut is_jump) = (0, false);
+    let mut samples = HermiteSamples::default();
+    let (mut triangle, mut is_jump) = (0, false);
     for edge in edges.iter() {
         let crossing = crossing(edge);
         let (point, normal) = sample(edge, crossing);
         qef.add(point, normal);
         samples.push(point, normal, crossing.triangle);
-        piece = crossing.triangle;
+        triangle = crossing.triangle;
         is_jump |= crossing.is_jump();
     }
-    // Where the sign jumps, the surface is far away and has nothing to say.
+    // Where the sign jumps, the surface is far away and its samples mean nothing.
     let surface = surface.filter(|_| !is_jump);
     let mut minimiser = qef.minimiser();
     let mut found = None;
     if let Some(surface) = surface {
-        let is_feature = minimiser.spread() > SPREAD;
-        let is_unsure = samples.disagreement(minimiser.point) > UNSURE;
+        let is_feature = minimiser.spread() > MIN_SPREAD;
+        let is_unsure = samples.disagreement(minimiser.point) > MAX_DISAGREEMENT;
         if is_feature || is_unsure {
-            let origin = lattice.unrounded(cell, [0.0; 3]);
-            let mut ask = Asker { surface, origin, voxel: lattice.voxel(), piece };
+            let origin = lattice.unrounded(cell, DVec3::ZERO);
+            let mut probe = SurfaceProbe { surface, origin, voxel: lattice.voxel(), triangle };
             if is_feature {
-                found = feature(&mut ask, &samples, minimiser.point, qef.mean());
+                found = locate_feature(&mut probe, &samples, minimiser.point, qef.mean());
             }
-            if found.is_none() && (is_unsure || samples.see_several_sides()) {
+            if found.is_none() && (is_unsure || samples.see_several_faces()) {
                 // Not where the planes meet, but at least on the surface.
                 let (position, _) = in_cell(lattice, cell, case, sheet, &crossing, &minimiser);
-                let point = nearest(&mut ask, lattice.local(cell, position));
+                let point = project_to_surface(&mut probe, lattice.local(cell, position));
                 found = point.map(|point| Feature { point, normals: Normals::default() });
             }
         }
     }
     match found {
         Some(feature) => minimiser.point = feature.point,
-        None if surface.is_some() && minimiser.spread() > SPREAD => {
+        None if surface.is_some() && minimiser.spread() > MIN_SPREAD => {
             let (height, normal) = samples.height(minimiser.point);
-            let excess = height - height.clamp(-HIGHEST, HIGHEST);
-            minimiser.point = along(minimiser.point, -excess, normal);
+            let excess = height - height.clamp(-MAX_HEIGHT, MAX_HEIGHT);
+            minimiser.point += -excess * normal;
         }
         None => {}
     }
     let (position, placement) = in_cell(lattice, cell, case, sheet, crossing, &minimiser);
-    let feature = found.map(|f| Feature { point: lattice.round_in_cell(cell, f.point), ..f });
-    Placed { position, placement, feature, is_jump }
+    let feature = found.map(|f| Feature { point: lattice.round_in_cell(cell, f.point).into(), ..f });
+    CellVertex { position, placement, feature, is_jump }
 }
 
-/// The position nearest to the minimiser that a cell and its walls allow, rounded.
+/// Returns the rounded position nearest to the minimiser that a cell and its walls allow.
 fn in_cell<'a>(
     lattice: &RoundedLattice,
     cell: Ijk,
@@ -152,14 +159,15 @@ fn in_cell<'a>(
         }
     }
     let start = start(lattice, cell, edges, &crossing, fits);
+    let from = DVec3::from(start);
     let target = lattice.unrounded(cell, target.unwrap_or(minimiser.point));
-    let towards = |share: f64| lattice.round(mix(start, target, share));
+    let towards = |share: f64| lattice.round(from + share * (target - from));
     let position = (0..HALVINGS).map(|n| towards(0.5f64.powi(n))).find(|&position| fits(position));
     (position.unwrap_or(start), Placement::Clamped)
 }
 
-/// A position that is allowed for sure: the mean of the crossings, or if rounding or the margin puts that
-/// on a wall, a position on the way from there to the mean of the midpoints of the crossed edges.
+/// Returns a position that is allowed for sure: the mean of the crossings, or, if rounding or the margin puts
+/// that on a wall, a position on the way from there to the mean of the midpoints of the crossed edges.
 fn start<'a>(
     lattice: &RoundedLattice,
     cell: Ijk,
@@ -167,51 +175,45 @@ fn start<'a>(
     crossing: impl Fn(Edge) -> &'a Crossing,
     fits: impl Fn([f64; 3]) -> bool,
 ) -> [f64; 3] {
-    let (mut mean, mut middle, count) = ([0.0; 3], [0.0; 3], edges.len() as f64);
+    let (mut mean, mut middle, count) = (DVec3::ZERO, DVec3::ZERO, edges.len() as f64);
     for edge in edges.iter() {
-        let (point, midpoint) = (on_edge(edge, lattice.clamp(crossing(edge).t)), on_edge(edge, 0.5));
-        for a in 0..3 {
-            mean[a] += point[a];
-            middle[a] += midpoint[a];
-        }
+        mean += on_edge(edge, lattice.clamp_to_edge(crossing(edge).t));
+        middle += on_edge(edge, 0.5);
     }
-    let mean = mean.map(|x| lattice.clamp(x / count));
-    let middle = middle.map(|x| x / count);
+    let mean = DVec3::from((mean / count).to_array().map(|x| lattice.clamp_to_edge(x)));
+    let middle = middle / count;
     let position = |step: i32| {
-        lattice.between_walls(cell, mix(mean, middle, f64::from(step) / f64::from(STEPS_TO_MIDDLE)))
+        let share = f64::from(step) / f64::from(STEPS_TO_MIDDLE);
+        lattice.between_walls(cell, (mean + share * (middle - mean)).to_array())
     };
     let found = (0..STEPS_TO_MIDDLE).map(position).find(|&p| fits(p));
     found.unwrap_or_else(|| position(STEPS_TO_MIDDLE))
 }
 
-/// A crossing as a sample of its sheet: the point in coordinates 0 to 1 of the cell, and the normal.
+/// Returns a crossing as a sample of its sheet: the point in coordinates 0 to 1 of the cell, and the normal.
 #[inline]
-pub fn sample(edge: Edge, crossing: &Crossing) -> ([f64; 3], [f64; 3]) {
-    (on_edge(edge, unit(crossing.t)), crossing.normal.map(f64::from))
+pub fn sample(edge: Edge, crossing: &Crossing) -> (DVec3, DVec3) {
+    (on_edge(edge, unit(crossing.t)), DVec3::from(crossing.normal.map(f64::from)))
 }
 
-/// The position of a cell's minimiser, rounded, if that keeps the margin from the cell's walls.
+/// Returns the rounded position of a point of a cell, if the point keeps the margin from the cell's walls.
 #[inline]
-pub fn free(lattice: &RoundedLattice, cell: Ijk, point: [f64; 3]) -> Option<[f64; 3]> {
+pub fn free(lattice: &RoundedLattice, cell: Ijk, point: DVec3) -> Option<[f64; 3]> {
     let margin = lattice.margin();
-    let is_inside = point.iter().all(|x| (margin..=1.0 - margin).contains(x));
+    let is_inside = point.to_array().iter().all(|x| (margin..=1.0 - margin).contains(x));
     is_inside.then(|| lattice.round_in_cell(cell, point))
 }
 
-/// The point of an edge at position `t`, in coordinates 0 to 1 of the cell.
+/// Returns the point of an edge at position `t`, in coordinates 0 to 1 of the cell.
 #[inline]
-fn on_edge(edge: Edge, t: f64) -> [f64; 3] {
+fn on_edge(edge: Edge, t: f64) -> DVec3 {
     let mut point = edge.low().offset().map(f64::from);
     point[edge.axis() as usize] = t;
-    point
+    point.into()
 }
 
-/// `t` kept within 0 to 1; what is not a number becomes 0.
+/// Returns `t` kept within 0 to 1; 0 for what is not a number.
 #[inline]
 fn unit(t: f64) -> f64 {
     if t >= 0.0 { t.min(1.0) } else { 0.0 }
-}
-
-fn mix(a: [f64; 3], b: [f64; 3], share: f64) -> [f64; 3] {
-    std::array::from_fn(|i| a[i] + share * (b[i] - a[i]))
 }

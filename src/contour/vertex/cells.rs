@@ -3,14 +3,14 @@
 use super::context::CellContext;
 use crate::band::LeafId;
 use crate::contour::cell::{Case, CaseId, CaseTable, CellId, Edge};
-use crate::contour::feature::{Features, VertexSet};
+use crate::contour::feature::{FeatureMap, VertexSet};
 
 /// The active cells, complete: nothing of them changes once the vertices are placed.
 pub struct Cells<'a> {
     /// The inputs.
     pub context: CellContext<'a>,
     /// The vertices on creases and corners.
-    pub features: Features,
+    pub features: FeatureMap,
     /// The vertices of cells in which the sign jumps
     /// ([`Crossing::is_jump`](crate::edge::Crossing::is_jump)): the surface is elsewhere.
     pub jumps: VertexSet,
@@ -44,7 +44,7 @@ impl<'a> Cells<'a> {
         context: CellContext<'a>,
         cases: Vec<CellCase>,
         crowded: Vec<bool>,
-        features: Features,
+        features: FeatureMap,
         jumps: VertexSet,
     ) -> Cells<'a> {
         Cells { context, features, jumps, cases, crowded }

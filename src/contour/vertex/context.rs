@@ -2,7 +2,7 @@
 
 use crate::band::{LeafId, SignField};
 use crate::contour::cell::CellNumbers;
-use crate::contour::implicit_surface::Surface;
+use crate::contour::implicit_surface::ImplicitSurface;
 use crate::contour::rounded_lattice::RoundedLattice;
 use crate::edge::Crossings;
 use crate::lattice::Slab;
@@ -21,7 +21,7 @@ pub struct CellContext<'a> {
     /// The numbers of the active cells.
     pub numbers: &'a CellNumbers,
     /// The surface, if there is one to sample.
-    pub surface: Option<&'a dyn Surface>,
+    pub surface: Option<&'a dyn ImplicitSurface>,
 }
 
 impl CellContext<'_> {

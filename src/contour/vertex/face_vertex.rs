@@ -200,7 +200,7 @@ fn middle(
         let (at, number) = locate(signs, leaf, (local + low).0);
         let id = crossings.numbers.get(at, edge.axis(), number).expect("a pair joins crossed edges");
         let mut point = low.0.map(f64::from);
-        point[edge.axis() as usize] = lattice.clamp(crossings.sample(id).t);
+        point[edge.axis() as usize] = lattice.clamp_to_edge(crossings.sample(id).t);
         sum = std::array::from_fn(|i| sum[i] + point[i]);
     }
     let mut point = sum.map(|x| 0.5 * x);

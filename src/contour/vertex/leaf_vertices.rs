@@ -4,53 +4,54 @@ use super::cell_vertex::{self, Placement, sample};
 use super::cells::CellCase;
 use super::context::CellContext;
 use super::leaf_crossings::LeafCrossings;
-use super::qef_batch::{Batch, LANES};
+use super::qef_batch::{LANES, QefBatch};
 use super::relocation::Relocation;
 use crate::band::LeafId;
 use crate::contour::cell::{Case, CaseTable, CornerSigns, constant_case};
 use crate::contour::feature::{FeatureVertex, Normals};
 use crate::lattice::{Ijk, bits};
 
-/// What is found of a leaf's cells besides the positions of their vertices.
+/// The results for a leaf's cells besides the positions of their vertices.
 #[derive(Debug, Default)]
 pub struct LeafVertices {
-    /// Vertices that ought to be elsewhere.
+    /// Vertices that belong elsewhere.
     pub relocations: Vec<Relocation>,
     /// Vertices on creases and corners.
     pub features: Vec<FeatureVertex>,
-    /// Vertices of cells with a jump of the sign.
+    /// Vertices of cells in which the sign jumps.
     pub jumps: Vec<u32>,
-    /// Cells with more than one sheet. Small numbers: most leaves have no cells, and there is this for all.
+    /// The number of cells with more than one sheet. 16 bits, since this is kept for all leaves.
     pub several_sheets: u16,
-    /// See [`ContourStatistics::clamped`](crate::contour::ContourStatistics::clamped).
+    /// The number of clamped vertices
+    /// ([`ContourStatistics::clamped`](crate::contour::ContourStatistics::clamped)).
     pub clamped: u16,
     /// Whether any cell is crowded ([`CornerSigns::crowded`]).
     pub is_crowded: bool,
 }
 
-/// A cell that waits for its vertices.
+/// A cell whose vertex is still to be solved.
 #[derive(Clone, Copy)]
-struct Waiting {
+struct PendingCell {
     case: &'static Case,
-    /// In nodes from the leaf's origin.
+    /// The cell, in nodes from the leaf's origin.
     local: Ijk,
-    /// The number of its first vertex in the leaf.
+    /// The number of the cell's first vertex in the leaf.
     first: usize,
 }
 
-/// The cells of a leaf on their way to vertices.
-struct Placer<'a> {
+/// A leaf whose vertices are being solved, in the order of its cells.
+struct LeafVertexSolver<'a> {
     context: &'a CellContext<'a>,
     leaf: LeafId,
     crossings: LeafCrossings<'a>,
     vertices: &'a mut [[f64; 3]],
-    batch: Batch,
-    waiting: [Option<Waiting>; LANES],
+    batch: QefBatch,
+    pending: [Option<PendingCell>; LANES],
     found: LeafVertices,
 }
 
 impl LeafVertices {
-    /// Fills in the cases and the vertices of the cells of one leaf.
+    /// Fills in the cases and the vertices of the cells of one leaf, and returns what else is found.
     pub fn place(
         context: &CellContext<'_>,
         leaf: LeafId,
@@ -65,50 +66,50 @@ impl LeafVertices {
         let crossings = LeafCrossings::new(context.signs, context.crossings, leaf);
         let table = CaseTable::get();
         let first_vertex = context.numbers.vertex_range(leaf).start as u32;
-        let (batch, waiting) = (Batch::default(), [None; LANES]);
+        let (batch, pending) = (QefBatch::default(), [None; LANES]);
         let found = LeafVertices { is_crowded: corners.crowded() != [0; 8], ..found };
-        let mut placer = Placer { context, leaf, crossings, vertices, batch, waiting, found };
+        let mut solver = LeafVertexSolver { context, leaf, crossings, vertices, batch, pending, found };
         let mut first = 0;
         for (cell, number) in cases.iter_mut().zip(bits(context.numbers.active(leaf))) {
             let id = constant_case(table, corners.mask(number));
             *cell = CellCase { first_vertex: first_vertex + first as u32, case: id };
             let case = table.case(id);
-            if context.crossings.numbers.is_partial() && !placer.has_all_crossings(case, number) {
-                let vertices = &mut placer.vertices[first..first + case.sheets().len()];
+            if context.crossings.numbers.is_partial() && !solver.has_all_crossings(case, number) {
+                let vertices = &mut solver.vertices[first..first + case.sheets().len()];
                 vertices.fill(cell_vertex::MISSING);
                 first += case.sheets().len();
                 continue;
             }
-            placer.add(Waiting { case, local: Ijk::in_leaf(Ijk::default(), number), first });
+            solver.add(PendingCell { case, local: Ijk::in_leaf(Ijk::default(), number), first });
             first += case.sheets().len();
         }
-        placer.finish();
-        placer.found
+        solver.finish();
+        solver.found
     }
 }
 
-impl Placer<'_> {
-    /// Whether no crossing of a cell is missing.
+impl LeafVertexSolver<'_> {
+    /// Whether all edges of a cell's sheets have crossings.
     fn has_all_crossings(&self, case: &Case, number: usize) -> bool {
         let local = Ijk::in_leaf(Ijk::default(), number);
         case.sheets().iter().all(|sheet| self.crossings.has_all(local.0, sheet.edges.iter()))
     }
 
-    /// Takes the next cell.
+    /// Adds the next cell.
     #[inline]
-    fn add(&mut self, cell: Waiting) {
+    fn add(&mut self, cell: PendingCell) {
         if let [sheet] = cell.case.sheets() {
             let samples = sheet.edges.iter().map(|edge| {
                 let crossing = self.crossings.of_cell(cell.local.0, edge);
                 sample(edge, crossing)
             });
-            self.waiting[self.batch.len()] = Some(cell);
+            self.pending[self.batch.len()] = Some(cell);
             self.batch.push(samples);
             if self.batch.len() == LANES {
                 self.finish();
             }
         } else {
-            // Vertices are numbered in the order of their cells, and features found in that order.
+            // Vertices are numbered in the order of their cells, and features must be found in that order.
             self.finish();
             self.found.several_sheets += 1;
             for sheet in 0..cell.case.sheets().len() {
@@ -117,11 +118,11 @@ impl Placer<'_> {
         }
     }
 
-    /// Places the vertices of all cells that wait.
+    /// Places the vertices of all pending cells.
     fn finish(&mut self) {
         let solved = self.batch.solve();
         for n in 0..LANES {
-            let Some(cell) = self.waiting[n].take() else { break };
+            let Some(cell) = self.pending[n].take() else { break };
             let at = self.context.signs.origin(self.leaf) + cell.local;
             let smooth =
                 solved.smooth(n).and_then(|point| cell_vertex::free(&self.context.lattice, at, point));
@@ -132,8 +133,8 @@ impl Placer<'_> {
         }
     }
 
-    /// Places the vertex of a sheet by itself.
-    fn place_one(&mut self, Waiting { case, local, first }: Waiting, sheet: usize) {
+    /// Places the vertex of one sheet by itself.
+    fn place_one(&mut self, PendingCell { case, local, first }: PendingCell, sheet: usize) {
         let CellContext { signs, lattice, numbers, surface, .. } = self.context;
         let at = signs.origin(self.leaf) + local;
         let crossing = |edge| self.crossings.of_cell(local.0, edge);
@@ -148,7 +149,7 @@ impl Placer<'_> {
         let Some(feature) = placed.feature else { return };
         self.found.features.push(FeatureVertex { vertex, feature });
         if placed.placement == Placement::Clamped {
-            self.found.relocations.push(Relocation { vertex, target: Some(feature.point) });
+            self.found.relocations.push(Relocation { vertex, target: Some(feature.point.to_array()) });
         } else if feature.normals == Normals::default() {
             self.found.relocations.push(Relocation { vertex, target: None });
         }

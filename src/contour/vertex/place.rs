@@ -8,8 +8,8 @@ use super::relocation::Relocation;
 use crate::band::{LeafId, SignField};
 use crate::contour::cell::CellNumbers;
 use crate::contour::error::ContourError;
-use crate::contour::feature::{Bend, Features, VertexSet};
-use crate::contour::implicit_surface::Surface;
+use crate::contour::feature::{CurvatureBound, FeatureMap, VertexSet};
+use crate::contour::implicit_surface::ImplicitSurface;
 use crate::contour::mesh::split_slices;
 use crate::contour::rounded_lattice::RoundedLattice;
 use crate::contour::settings::ContourSettings;
@@ -51,14 +51,14 @@ pub fn with_vertices<R: Send>(
     signs: &SignField,
     crossings: &Crossings,
     lattice: Lattice,
-    surface: Option<&dyn Surface>,
+    surface: Option<&dyn ImplicitSurface>,
     settings: &ContourSettings,
     run: &RunSettings,
     finish: impl FnOnce(PlacedVertices<'_>, &PhaseGuard<'_>) -> Result<R, ContourError> + Send,
 ) -> Result<R, ContourError> {
     assert_eq!(crossings.samples.len(), crossings.numbers.len(), "one sample for each crossing");
-    let reach = settings.reach.unwrap_or_else(|| reach(signs, crossings));
-    let rounded = RoundedLattice::new(lattice, settings.precision, reach)?;
+    let extent = settings.extent.unwrap_or_else(|| extent(signs, crossings));
+    let rounded = RoundedLattice::new(lattice, settings.precision, extent)?;
     run.install(|| {
         let numbers = CellNumbers::new(signs, run)?;
         let leaves = numbers.leaves().count() + crossings.numbers.leaves().len();
@@ -73,7 +73,7 @@ pub fn with_vertices<R: Send>(
 }
 
 /// Returns the largest index, in size, of a corner of an active cell.
-fn reach(signs: &SignField, crossings: &Crossings) -> u32 {
+fn extent(signs: &SignField, crossings: &Crossings) -> u32 {
     let crossed = signs.leaves().filter(|&leaf| !crossings.numbers.range(leaf).is_empty());
     let sizes = crossed.flat_map(|leaf| signs.origin(leaf).0.map(i32::unsigned_abs));
     // A leaf has 8 nodes, and cells reach one node further.
@@ -127,6 +127,10 @@ fn place_cell_vertices<'a>(
         }
     }
     let jumps = VertexSet::new(jumps.into_iter(), vertices.len());
-    let features = Features::new(features, vertices.len(), surface.map_or(Bend::UNKNOWN, Bend::of));
+    let features = FeatureMap::new(
+        features,
+        vertices.len(),
+        surface.map_or(CurvatureBound::UNKNOWN, CurvatureBound::of),
+    );
     Ok((Cells::new(context, cases, crowded, features, jumps), vertices, relocations, statistics))
 }

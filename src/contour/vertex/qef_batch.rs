@@ -1,4 +1,4 @@
-//! The vertices of cells that see one smooth side of the surface, eight at a time: most cells do.
+//! The minimisers of cells that see one smooth face of the surface, eight at a time. Most cells do.
 //!
 //! Normals n_i that differ little have their error function's matrix nearly in the frame of their mean v:
 //!
@@ -8,42 +8,42 @@
 //!     t  [ k   T ]      T: two by two, the spread of the normals;  k: of third order in it
 //! ```
 //!
-//! so the least point follows without an eigen decomposition: along v by a quotient, and in the plane across v by
-//! the two by two matrix, where its eigenvalues are above the [`CUTOFF`] of [`qef`](crate::geom::quadric). What is not smooth is
-//! left to [`cell_vertex`](super::cell_vertex).
+//! so the least point follows without an eigen decomposition: along v by a quotient, and in the plane across
+//! v by the two by two matrix, where its eigenvalues are above the [`CUTOFF`] of the
+//! [`Qef`](crate::geom::quadric::Qef). Cells that are not smooth are left to
+//! [`cell_vertex`](super::cell_vertex).
 
-use super::cell_vertex::UNSURE;
-use crate::contour::feature::SPREAD;
+use super::cell_vertex::MAX_DISAGREEMENT;
+use crate::contour::feature::MIN_SPREAD;
 use crate::geom::quadric::CUTOFF;
 use crate::geom::simd::{F64s, Mask64s, Vec3F64s, dispatch};
+use glam::DVec3;
 use pulp::{Simd, WithSimd};
 
-type Point = [f64; 3];
-
-/// Cells that are solved together.
+/// The number of cells that are solved together.
 pub const LANES: usize = 8;
 
 /// The most crossings of a cell.
-const MOST: usize = 12;
+const MAX_CROSSINGS: usize = 12;
 
-/// How much the squared lengths of a cell's normals may differ from one, added up. What is not a number differs.
-const UNIT: f64 = 1e-3;
+/// The largest sum of the differences of a cell's squared normals from one. What is not a number differs.
+const UNIT_TOLERANCE: f64 = 1e-3;
 
-/// Crossings with the same number of several cells: points in coordinates 0 to 1 of their cells, and unit normals. Zero
-/// beyond the last crossing of a cell, which adds nothing anywhere.
+/// The crossings with one number of several cells: points in coordinates 0 to 1 of their cells, and unit
+/// normals. Zero beyond the last crossing of a cell, which adds nothing anywhere.
 #[derive(Clone, Copy, Debug, Default)]
 struct Slot {
     points: [[f64; LANES]; 3],
     normals: [[f64; LANES]; 3],
 }
 
-/// Cells to be solved together.
+/// The error functions of cells that are solved together.
 #[derive(Debug, Default)]
-pub struct Batch {
-    slots: [Slot; MOST],
-    /// The slots in use.
+pub struct QefBatch {
+    slots: [Slot; MAX_CROSSINGS],
+    /// The number of slots in use.
     used: usize,
-    /// Crossings by cell, at least one each.
+    /// The number of crossings of each cell, at least one.
     counts: [f64; LANES],
     len: usize,
 }
@@ -52,30 +52,31 @@ pub struct Batch {
 #[derive(Debug, Default)]
 pub struct Solved {
     points: [[f64; LANES]; 3],
-    /// By cell 1 where the surface is smooth.
+    /// By cell 1 where the surface is smooth, else 0.
     is_smooth: [f64; LANES],
 }
 
 impl Solved {
-    /// The least point of the error function of cell `n`, where it sees a smooth side and its planes agree.
+    /// Returns the minimiser of cell `n`, where the cell sees one smooth face and its planes agree.
     #[inline]
-    pub fn smooth(&self, n: usize) -> Option<Point> {
-        (self.is_smooth[n] == 1.0).then(|| self.points.map(|x| x[n]))
+    pub fn smooth(&self, n: usize) -> Option<DVec3> {
+        (self.is_smooth[n] == 1.0).then(|| self.points.map(|x| x[n]).into())
     }
 }
 
-impl Batch {
-    /// The number of cells.
+impl QefBatch {
+    /// Returns the number of cells.
     pub fn len(&self) -> usize {
         self.len
     }
 
     /// Adds a cell with at most twelve crossings.
     #[inline]
-    pub fn push(&mut self, crossings: impl Iterator<Item = (Point, Point)>) {
+    pub fn push(&mut self, crossings: impl Iterator<Item = (DVec3, DVec3)>) {
         let lane = self.len;
         let mut count = 0;
         for (point, normal) in crossings {
+            let (point, normal) = (point.to_array(), normal.to_array());
             if count == self.used {
                 self.slots[count] = Slot::default();
                 self.used += 1;
@@ -97,7 +98,7 @@ impl Batch {
         self.len += 1;
     }
 
-    /// Solves all cells, and begins a new batch.
+    /// Solves all cells, and empties the batch.
     pub fn solve(&mut self) -> Solved {
         let solved = dispatch(Solve { slots: &self.slots[..self.used], counts: &self.counts });
         self.len = 0;
@@ -125,7 +126,7 @@ impl WithSimd for Solve<'_> {
     }
 }
 
-/// One vector of cells.
+/// Solves one vector of cells.
 #[inline(always)]
 fn solve<S: Simd>(simd: S, Solve { slots, counts }: Solve<'_>, vector: usize, solved: &mut Solved) {
     let number = F64s::splat;
@@ -159,7 +160,7 @@ fn solve<S: Simd>(simd: S, Solve { slots, counts }: Solve<'_>, vector: usize, so
         rf = rf + nf * height;
     }
     let along = rv / a;
-    let within = Plane { ee, ef, ff, re: re - ke * along, rf: rf - kf * along };
+    let within = PlaneEquations { ee, ef, ff, re: re - ke * along, rf: rf - kf * along };
     let (largest, x, y) = within.least(simd, number(simd, CUTOFF) * a);
     let point = mean + v.times(along) + e.times(x) + f.times(y);
 
@@ -170,14 +171,14 @@ fn solve<S: Simd>(simd: S, Solve { slots, counts }: Solve<'_>, vector: usize, so
         disagreement = disagreement.max(height.max(zero - height));
     }
     let lengths = a + ee + ff - count;
-    let is_smooth = largest.at_most(number(simd, SPREAD) * a)
-        & disagreement.at_most(number(simd, UNSURE))
-        & lengths.max(zero - lengths).at_most(number(simd, UNIT));
+    let is_smooth = largest.at_most(number(simd, MIN_SPREAD) * a)
+        & disagreement.at_most(number(simd, MAX_DISAGREEMENT))
+        & lengths.max(zero - lengths).at_most(number(simd, UNIT_TOLERANCE));
     point.store(&mut solved.points, vector);
     is_smooth.select(number(simd, 1.0), zero).store(&mut solved.is_smooth, vector);
 }
 
-/// Two unit vectors perpendicular to `v` and to each other (Duff et al. 2017).
+/// Returns two unit vectors perpendicular to `v` and to each other (Duff et al. 2017).
 #[inline(always)]
 fn across<S: Simd>(simd: S, v: Vec3F64s<S>) -> (Vec3F64s<S>, Vec3F64s<S>) {
     let [zero, one] = [0.0, 1.0].map(|x| F64s::splat(simd, x));
@@ -191,7 +192,7 @@ fn across<S: Simd>(simd: S, v: Vec3F64s<S>) -> (Vec3F64s<S>, Vec3F64s<S>) {
 
 /// The equations in the plane across the mean normal.
 #[derive(Clone, Copy)]
-struct Plane<S: Simd> {
+struct PlaneEquations<S: Simd> {
     ee: F64s<S>,
     ef: F64s<S>,
     ff: F64s<S>,
@@ -199,12 +200,12 @@ struct Plane<S: Simd> {
     rf: F64s<S>,
 }
 
-impl<S: Simd> Plane<S> {
-    /// The larger eigenvalue, and the solution along the eigenvectors whose eigenvalues are above `cutoff`, zero along
-    /// the others.
+impl<S: Simd> PlaneEquations<S> {
+    /// Returns the larger eigenvalue, and the solution along the eigenvectors whose eigenvalues are above
+    /// `cutoff`, zero along the others.
     #[inline(always)]
     fn least(self, simd: S, cutoff: F64s<S>) -> (F64s<S>, F64s<S>, F64s<S>) {
-        let Plane { ee, ef, ff, re, rf } = self;
+        let PlaneEquations { ee, ef, ff, re, rf } = self;
         let [zero, half] = [0.0, 0.5].map(|x| F64s::splat(simd, x));
         let middle = half * (ee + ff);
         let difference = half * (ee - ff);
@@ -237,13 +238,13 @@ mod tests {
         (*state >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    fn unit(v: Point) -> Point {
+    fn unit(v: [f64; 3]) -> [f64; 3] {
         let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
         v.map(|x| x / length)
     }
 
     /// A cell whose normals are off a direction by up to `spread`.
-    fn cell(state: &mut u64, spread: f64) -> Vec<(Point, Point)> {
+    fn cell(state: &mut u64, spread: f64) -> Vec<(DVec3, DVec3)> {
         let direction = unit([0.0; 3].map(|_: f64| random(state) - 0.5));
         let count = 3 + (random(state) * 9.9) as usize;
         let mut sample = || {
@@ -254,7 +255,7 @@ mod tests {
             for a in 0..3 {
                 point[a] += 0.5 - (1.0 - 0.2 * spread) * height * direction[a];
             }
-            (point, normal)
+            (DVec3::from(point), DVec3::from(normal))
         };
         (0..count).map(|_| sample()).collect()
     }
@@ -266,7 +267,7 @@ mod tests {
         for round in 0..2_000 {
             let spread = [0.0, 1e-9, 0.02, 0.05, 0.1, 0.2][round % 6];
             let cells: Vec<_> = (0..1 + round % LANES).map(|_| cell(&mut state, spread)).collect();
-            let mut batch = Batch::default();
+            let mut batch = QefBatch::default();
             // Of what another batch leaves behind nothing may be seen.
             cells.iter().rev().for_each(|c| batch.push(c.iter().copied()));
             batch.solve();
@@ -283,14 +284,14 @@ mod tests {
                         .iter()
                         .map(|(p, n)| (0..3).map(|a| n[a] * (minimiser.point[a] - p[a])).sum::<f64>().abs());
                     let farthest = farthest.fold(0.0, f64::max);
-                    assert!(minimiser.spread() > 0.9 * SPREAD || farthest > 0.9 * UNSURE);
+                    assert!(minimiser.spread() > 0.9 * MIN_SPREAD || farthest > 0.9 * MAX_DISAGREEMENT);
                     continue;
                 };
                 smooth += 1;
-                assert!(minimiser.spread() < 1.1 * SPREAD);
+                assert!(minimiser.spread() < 1.1 * MIN_SPREAD);
                 // At the cut-off itself either may count a direction that the other leaves out.
                 let mut matrix = Sym3::default();
-                samples.iter().for_each(|(_, normal)| matrix.add_outer(*normal));
+                samples.iter().for_each(|(_, normal)| matrix.add_outer(normal.to_array()));
                 let values = matrix.eigen().values;
                 let is_beside = |value: f64| (value / (CUTOFF * values[0]) - 1.0).abs() > 0.01;
                 if is_beside(values[1]) && is_beside(values[2]) {
@@ -306,13 +307,13 @@ mod tests {
     #[test]
     fn normals_that_are_none_are_not_smooth() {
         for bad in [[f64::NAN, 0.0, 1.0], [0.0; 3], [f64::INFINITY, 0.0, 0.0], [0.0, 0.0, 2.0]] {
-            let mut batch = Batch::default();
-            let good = [0.0, 0.0, 1.0];
-            batch
-                .push([([0.0, 0.0, 0.5], good), ([1.0, 0.0, 0.5], good), ([0.0, 1.0, 0.5], bad)].into_iter());
-            batch.push([([0.0, 0.0, 0.5], good), ([1.0, 0.0, 0.5], good)].into_iter());
+            let mut batch = QefBatch::default();
+            let good = DVec3::Z;
+            let at = |x: f64, y: f64| DVec3::new(x, y, 0.5);
+            batch.push([(at(0.0, 0.0), good), (at(1.0, 0.0), good), (at(0.0, 1.0), bad.into())].into_iter());
+            batch.push([(at(0.0, 0.0), good), (at(1.0, 0.0), good)].into_iter());
             let solved = batch.solve();
-            assert_eq!((solved.smooth(0), solved.smooth(1)), (None, Some([0.5, 0.0, 0.5])), "{bad:?}");
+            assert_eq!((solved.smooth(0), solved.smooth(1)), (None, Some(at(0.5, 0.0))), "{bad:?}");
         }
     }
 }

@@ -3,9 +3,8 @@ use super::*;
 fn unit_box() -> Vec<HalfSpace> {
     (0..3)
         .flat_map(|a| {
-            let mut normal = [0.0; 3];
-            normal[a] = 1.0;
-            [HalfSpace { normal, offset: 0.0 }, HalfSpace { normal: normal.map(|x| -x), offset: -1.0 }]
+            let normal = DVec3::AXES[a];
+            [HalfSpace { normal, offset: 0.0 }, HalfSpace { normal: -normal, offset: -1.0 }]
         })
         .collect()
 }
@@ -13,13 +12,13 @@ fn unit_box() -> Vec<HalfSpace> {
 fn qef(planes: &[([f64; 3], [f64; 3])]) -> Qef {
     let mut qef = Qef::default();
     for &(point, normal) in planes {
-        let length = dot(normal, normal).sqrt();
-        qef.add(point, normal.map(|x| x / length));
+        let normal = DVec3::from(normal);
+        qef.add(point.into(), normal / normal.length());
     }
     qef
 }
 
-fn close(a: [f64; 3], b: [f64; 3]) -> bool {
+fn close(a: DVec3, b: [f64; 3]) -> bool {
     (0..3).all(|i| (a[i] - b[i]).abs() < 1e-9)
 }
 
@@ -41,8 +40,8 @@ fn what_the_planes_leave_open_stays_at_the_mean() {
     let crease = qef(&[([0.2, 0.4, 0.0], [1.0, 0.0, 1.0]), ([0.6, 0.8, 0.0], [-1.0, 0.0, 1.0])]);
     assert!(close(crease.minimiser().point, [0.4, 0.6, -0.2]));
     let mut no_normals = Qef::default();
-    no_normals.add([0.25; 3], [f64::NAN, 0.0, 0.0]);
-    no_normals.add([0.75; 3], [0.0; 3]);
+    no_normals.add(DVec3::splat(0.25), DVec3::new(f64::NAN, 0.0, 0.0));
+    no_normals.add(DVec3::splat(0.75), DVec3::ZERO);
     assert!(close(no_normals.minimiser().point, [0.5; 3]));
 }
 
@@ -63,19 +62,19 @@ fn no_point_of_the_region_is_better() {
         let minimiser = qef(&planes).minimiser();
         let mut region = unit_box();
         if round % 2 == 0 {
-            region.push(HalfSpace { normal: [-1.0; 3], offset: -1.0 });
+            region.push(HalfSpace { normal: -DVec3::ONE, offset: -1.0 });
         }
         let best = minimiser.within(&region).unwrap();
         assert!(region.iter().all(|half| half.depth(best) >= -TOLERANCE));
         outside += usize::from(best != minimiser.point);
-        let error = |w: [f64; 3]| {
-            let d = std::array::from_fn(|i| w[i] - minimiser.point[i]);
+        let error = |w: DVec3| {
+            let d = w - minimiser.point;
             let parts = minimiser.vectors.iter().zip(minimiser.weights);
-            parts.map(|(v, weight)| weight * dot(*v, d).powi(2)).sum::<f64>()
+            parts.map(|(v, weight)| weight * v.dot(d).powi(2)).sum::<f64>()
         };
         let steps = 12;
         for n in 0..(steps + 1) * (steps + 1) * (steps + 1) {
-            let w = [n / 169, n / 13 % 13, n % 13].map(|i| f64::from(i) / f64::from(steps));
+            let w = DVec3::from([n / 169, n / 13 % 13, n % 13].map(|i| f64::from(i) / f64::from(steps)));
             if region.iter().all(|half| half.depth(w) >= 0.0) {
                 assert!(error(w) >= error(best) - 1e-9, "round {round}: {w:?} is better than {best:?}");
             }

@@ -220,8 +220,8 @@ fn target(
     // Triangles of strips and caps have no Hermite data of their own.
     let faces: Vec<&ContourFace> = vertex.star.iter().filter_map(|&t| movable.face(t)).collect();
     let mut qef = Qef::default();
-    faces.iter().for_each(|face| qef.add(face.point.to_array(), face.normal.to_array()));
-    let least = DVec3::from(qef.minimiser_near(from.to_array()).point);
+    faces.iter().for_each(|face| qef.add(face.point, face.normal));
+    let least = qef.minimiser_near(from).point;
     let is_shell = faces.iter().all(|face| face.of == SolidFace::Shell);
     let to = if is_shell {
         // On a crease of the shell if there is one, and nowhere else.

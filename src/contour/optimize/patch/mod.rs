@@ -155,12 +155,12 @@ impl Patch {
         self.corners.of(vertex).next().map(|(n, k)| self.triangles[n].corners[k])
     }
 
-    /// Whether a vertex other than `vertex` lies within `radius` of `p`.
-    pub fn is_taken(&self, p: Point, radius: f64, vertex: u32) -> bool {
+    /// Whether a vertex lies within `radius`, in model units, of `p`.
+    pub fn is_taken(&self, p: Point, radius: f64) -> bool {
         let near = |q: Point| (0..3).map(|a| (q[a] - p[a]) * (q[a] - p[a])).sum::<f64>() <= radius * radius;
         let around = Bounds::around([p]).grown(radius);
         let mut triangles = self.boxes.near(&around).map(|n| &self.triangles[n]);
-        triangles.any(|t| t.vertices.iter().zip(t.corners).any(|(&v, q)| v != vertex && near(q)))
+        triangles.any(|t| t.corners.into_iter().any(near))
     }
 
     /// The vertices within `radius` of `p`, by number, with the squares of their distances.

@@ -1,19 +1,20 @@
-//! The promise does not depend on what the surface answers: surfaces that lie, on random lattices.
+//! The promise does not depend on the samples of the surface: adversarial ones, on random lattices.
 
 use crate::contour::tests::fields::{Random, run_with};
 use crate::contour::tests::random::{PLACES, is_heavy, lattice};
-use crate::contour::{ContourStatistics, Creases, Surface};
+use crate::contour::{ContourStatistics, Creases, ImplicitSurface, SurfaceSample};
 use crate::lattice::Ijk;
 use crate::verify::tests::audit::audit;
+use glam::DVec3;
 
-/// Answers that have nothing to do with anything, but are the same for the same question.
-struct Liar {
+/// A surface whose samples have nothing to do with anything, but are the same for the same point.
+struct AdversarialSurface {
     seed: u64,
     voxel: f64,
     creases: Creases,
 }
 
-impl Surface for Liar {
+impl ImplicitSurface for AdversarialSurface {
     fn creases(&self) -> Creases {
         self.creases
     }
@@ -22,19 +23,18 @@ impl Surface for Liar {
         0.1 / self.voxel
     }
 
-    fn piece_at(&self, p: [f64; 3], piece: u32) -> (f64, [f64; 3]) {
-        let mut other = piece;
-        Liar { seed: self.seed ^ u64::from(piece % 7), ..*self }.at(p, &mut other)
+    fn sample_triangle(&self, p: DVec3, triangle: u32) -> SurfaceSample {
+        AdversarialSurface { seed: self.seed ^ u64::from(triangle % 7), ..*self }.sample(p, triangle)
     }
 
-    fn at(&self, p: [f64; 3], piece: &mut u32) -> (f64, [f64; 3]) {
-        // Coarse steps half of the time, so that neighbouring questions agree and features are found.
+    fn sample(&self, p: DVec3, _: u32) -> SurfaceSample {
+        // Coarse steps half of the time, so that neighbouring samples agree and features are found.
         let step = if self.seed.is_multiple_of(2) { self.voxel } else { 1e-9 * self.voxel };
-        let key = p.iter().fold(self.seed, |k, &x| {
+        let key = p.to_array().into_iter().fold(self.seed, |k, x| {
             k.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ ((x / step).floor() as i64 as u64)
         });
         let mut random = Random(key);
-        *piece = random.bits() as u32;
+        let triangle = random.bits() as u32;
         let distance = match random.unit() {
             u if u < 0.01 => f64::NAN,
             u if u < 0.02 => f64::INFINITY,
@@ -43,7 +43,7 @@ impl Surface for Liar {
             _ => (4.0 * random.unit() - 2.0) * self.voxel,
         };
         let gradient = if random.unit() < 0.02 { [f64::NAN, 0.0, 1.0] } else { random.direction() };
-        (distance, gradient)
+        SurfaceSample { distance, gradient: gradient.into(), triangle }
     }
 }
 
@@ -51,10 +51,10 @@ fn check(seed: u64, n: i32) -> ContourStatistics {
     let (voxel, at, precision) = PLACES[(seed % PLACES.len() as u64) as usize];
     let corner = Ijk::new(at, 3 - at / 2, at / 3 + 5);
     let creases = [Creases::Concave, Creases::Convex, Creases::Both][(seed % 3) as usize];
-    let liar = Liar { seed, voxel, creases };
+    let surface = AdversarialSurface { seed, voxel, creases };
     let tolerance = seed.is_multiple_of(4).then_some(1.9);
     let field = lattice(seed, n, corner);
-    let (mesh, statistics) = run_with(&field, voxel, (precision, tolerance), 2, &liar);
+    let (mesh, statistics) = run_with(&field, voxel, (precision, tolerance), 2, &surface);
     let audit = audit(&mesh);
     assert!(audit.is_sound(), "seed {seed}, {n}^3: {audit:?}, {statistics:?}");
     assert!(mesh.vertices.iter().flatten().all(|&x| precision.round(x) == x));
@@ -62,7 +62,7 @@ fn check(seed: u64, n: i32) -> ContourStatistics {
     positions.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap());
     assert!(positions.windows(2).all(|pair| pair[0] != pair[1]), "two vertices at one position, seed {seed}");
     // The same bytes for another number of threads.
-    let other = run_with(&field, voxel, (precision, tolerance), 1, &liar).0;
+    let other = run_with(&field, voxel, (precision, tolerance), 1, &surface).0;
     assert!(other.vertices == mesh.vertices && other.triangles == mesh.triangles, "seed {seed}");
     statistics
 }
@@ -77,7 +77,7 @@ fn check_all(seeds: std::ops::Range<u64>, n: i32) {
 }
 
 #[test]
-fn surfaces_that_lie_break_nothing() {
+fn adversarial_surfaces_break_nothing() {
     check_all(0..if is_heavy() { 500 } else { 24 }, 6);
 }
 
