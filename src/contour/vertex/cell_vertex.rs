@@ -52,7 +52,7 @@ pub enum Placement {
 /// The position of a vertex that is not made, because its cell lacks crossings
 /// ([`EdgeNumbers::is_partial`]). Nothing of the cell gets into the mesh.
 ///
-/// [`EdgeNumbers::is_partial`]: crate::edge::EdgeNumbers::is_open
+/// [`EdgeNumbers::is_partial`]: crate::edge::EdgeNumbers::is_partial
 pub const MISSING: [f64; 3] = [f64::NAN; 3];
 
 /// Whether a position is [`MISSING`].
