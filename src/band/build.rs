@@ -190,7 +190,7 @@ impl<'a> Plan<'a> {
         };
         let statistics = FilterStatistics { nodes_total: node_count(grid), ..Default::default() };
         let mut boxes = bounding_boxes(grid, filters.side);
-        boxes.retain(|b| settings.slab.computes(b.origin, b.side));
+        boxes.retain(|b| settings.slab.computes(b.origin, b.width));
         Plan { filter, boxes, statistics }
     }
 }
@@ -202,18 +202,18 @@ fn node_count([lo, hi]: [Ijk; 2]) -> u64 {
 /// Returns the bounding boxes that cover the grid, in lexicographic order.
 fn bounding_boxes([lo, hi]: [Ijk; 2], side: BoxSide) -> Vec<Block> {
     let longest = (hi - lo).0.into_iter().max().expect("three axes") + 1;
-    let side = match side {
+    let width = match side {
         // The power of two at or below.
         BoxSide::Automatic => 1 << (longest / BOXES_ALONG_AXIS).max(2 * LEAF_DIM).ilog2(),
         BoxSide::PowerOfTwo(n) => 1 << n,
     };
-    let first = lo.0.map(|i| i.div_euclid(side));
-    let last = hi.0.map(|i| i.div_euclid(side));
+    let first = lo.0.map(|i| i.div_euclid(width));
+    let last = hi.0.map(|i| i.div_euclid(width));
     let mut boxes = Vec::new();
     for i in first[0]..=last[0] {
         for j in first[1]..=last[1] {
             for k in first[2]..=last[2] {
-                boxes.push(Block { origin: Ijk::new(i * side, j * side, k * side), side });
+                boxes.push(Block { origin: Ijk::new(i * width, j * width, k * width), width });
             }
         }
     }
@@ -285,7 +285,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
                 }
             }
             // A box of a single leaf has no smaller ones above the leaf's own.
-            Verdict::Kept { triangle, distance } if block.side == LEAF_DIM => {
+            Verdict::Kept { triangle, distance } if block.width == LEAF_DIM => {
                 kept.push((block.origin, triangle, distance));
             }
             Verdict::Kept { triangle, .. } => {
@@ -317,7 +317,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
     /// Adds a block on the negative side, beyond the band. Without signs, that says nothing.
     fn push_inside(&self, block: Block, batch: &mut LeafBatch) {
         if P::IS_SIGNED {
-            batch.inside_blocks.push((block.origin, block.side));
+            batch.inside_blocks.push((block.origin, block.width));
         }
     }
 

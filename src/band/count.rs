@@ -32,15 +32,15 @@ pub fn count_queries(
         let Verdict::Kept { triangle, .. } = filter.bounding_box(block, &mut counts) else {
             return Ok(counts);
         };
-        let nodes = |side: i32| (side as u64).pow(3);
+        let nodes = |width: i32| (width as u64).pow(3);
         if filters.octree == Switch::Off {
-            counts.node_queries += nodes(block.side);
+            counts.node_queries += nodes(block.width);
             return Ok(counts);
         }
         let mut node_queries = 0;
         filter.octree(block, triangle, SMALLEST, &mut counts, &mut |block, verdict| {
             if matches!(verdict, Verdict::Kept { .. }) {
-                node_queries += nodes(block.side);
+                node_queries += nodes(block.width);
             }
         });
         counts.node_queries += node_queries;

@@ -46,7 +46,7 @@ pub fn count_layers(
                 let mut kept = Vec::new();
                 match filter.bounding_box(block, &mut ignored) {
                     Verdict::Outside | Verdict::Inside => {}
-                    Verdict::Kept { .. } if block.side == LEAF_DIM => kept.push(block.origin.0[0]),
+                    Verdict::Kept { .. } if block.width == LEAF_DIM => kept.push(block.origin.0[0]),
                     Verdict::Kept { triangle, .. } => {
                         filter.octree(block, triangle, LEAF_DIM, &mut ignored, &mut |leaf, verdict| {
                             if matches!(verdict, Verdict::Kept { .. }) {

@@ -40,11 +40,11 @@ impl Leaf {
     /// Sets all nodes of a block.
     pub(super) fn fill(&mut self, block: Block, value: f32) {
         let first = block.origin.number_in_leaf();
-        let side = block.side as usize;
-        for x in 0..side {
-            for y in 0..side {
+        let width = block.width as usize;
+        for x in 0..width {
+            for y in 0..width {
                 let row = first + 64 * x + 8 * y;
-                self.values[row..row + side].fill(value);
+                self.values[row..row + width].fill(value);
             }
         }
     }

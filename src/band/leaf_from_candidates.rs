@@ -41,7 +41,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
         batch: &mut LeafBatch,
         statistics: &mut FilterStatistics,
     ) {
-        let block = Block { origin, side: LEAF_DIM };
+        let block = Block { origin, width: LEAF_DIM };
         let ssvh = self.filter.distance.ssvh();
         let q = ssvh.triangle(triangle).closest(block.centre(self.filter.lattice)).point;
         // A policy without signs decides by lists.
@@ -85,14 +85,14 @@ impl<P: LeafPolicy> Worker<'_, P> {
     fn octants(&self, depth: usize, block: Block, side: Option<f64>, work: &mut Work<'_>) {
         let lattice = self.filter.lattice;
         let octants = block.children();
-        let middle = 0.5 * (octants[0].side - 1) as f32;
+        let middle = 0.5 * (octants[0].width - 1) as f32;
         let mut centres = [[0.0; 8]; 3];
         for (n, octant) in octants.iter().enumerate() {
             for (centre, node) in centres.iter_mut().zip(octant.origin.0) {
                 centre[n] = (node & (LEAF_DIM - 1)) as f32 + middle - CENTRE;
             }
         }
-        work.pruner.measure(depth, &centres, octants[0].side);
+        work.pruner.measure(depth, &centres, octants[0].width);
         // Where signs differ, they are those of the exact closest triangles.
         let exact = side.is_none().then(|| {
             let points = octants.map(|octant| octant.centre(lattice));
@@ -128,7 +128,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
                 }
                 None => {}
             }
-            if octant.side > 2 {
+            if octant.width > 2 {
                 self.octants(depth + 1, octant, side, work);
                 continue;
             }

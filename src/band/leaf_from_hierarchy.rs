@@ -23,7 +23,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
         let background = self.settings.background();
         let mut kept: [(Ijk, u32, f64); 64] = [(Ijk::default(), 0, 0.0); 64];
         let mut kept_count = 0;
-        let block = Block { origin, side: LEAF_DIM };
+        let block = Block { origin, width: LEAF_DIM };
         self.filter.octree(block, triangle, 2, statistics, &mut |block, verdict| match verdict {
             Verdict::Outside => leaf.fill(block, background),
             Verdict::Inside => leaf.fill(block, -background),
@@ -33,7 +33,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
             }
         });
         for &(origin, triangle, distance) in &kept[..kept_count] {
-            self.nodes(Block { origin, side: 2 }, triangle, distance, &mut leaf, statistics);
+            self.nodes(Block { origin, width: 2 }, triangle, distance, &mut leaf, statistics);
         }
         self.finish_without_lists(&leaf, origin, batch);
     }
@@ -48,7 +48,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
     ) {
         let mut leaf = Leaf::new();
         for number in (0..LEAF_SIZE).filter(|n| n & 0b001_001_001 == 0) {
-            let block = Block { origin: Ijk::in_leaf(origin, number), side: 2 };
+            let block = Block { origin: Ijk::in_leaf(origin, number), width: 2 };
             // A centre on the surface decides no sign.
             self.nodes(block, triangle, 0.0, &mut leaf, statistics);
         }

@@ -68,13 +68,13 @@ impl BlockCandidates<'_> {
     /// in the list.
     pub fn is_above(&self, height: f64) -> bool {
         let height = (height / self.lattice.voxel) as f32;
-        self.pruner.is_above(self.depth, self.centre, self.block.side, height)
+        self.pruner.is_above(self.depth, self.centre, self.block.width, height)
     }
 
     /// Whether all nodes are under the planes of all triangles in the list, and no triangle of the
     /// list is excepted.
     pub fn is_below(&self, is_excepted: impl Fn(u32) -> bool) -> bool {
         let by_slot = |slot: u32| is_excepted(self.ssvh.id_at(slot));
-        self.pruner.is_below(self.depth, self.centre, self.block.side, by_slot)
+        self.pruner.is_below(self.depth, self.centre, self.block.width, by_slot)
     }
 }

@@ -196,7 +196,7 @@ fn the_band_does_not_depend_on_the_filters() {
                     assert!(leaves.insert(origin, leaf).is_none(), "{origin:?} comes twice");
                 }
                 for &(origin, side) in &batch.inside_blocks {
-                    inside.extend(crate::filter::Block { origin, side }.leaves());
+                    inside.extend(crate::filter::Block { origin, width: side }.leaves());
                 }
                 Ok::<_, Cancelled>(())
             });

@@ -177,7 +177,7 @@ impl CandidateLists {
     pub fn of_cell(&self, node: Ijk) -> Option<Candidates<'_>> {
         let (part, leaf) = self.leaves[self.index.get(node)?];
         let List { slots, packed, base } = self.parts[part as usize].list(leaf as usize, node)?;
-        let block = Block { origin: Ijk(node.0.map(|x| x & !1)), side: 2 };
+        let block = Block { origin: Ijk(node.0.map(|x| x & !1)), width: 2 };
         Some(Candidates {
             slots,
             packed,

@@ -89,7 +89,7 @@ impl CandidatePruner {
     /// `most`; otherwise no list can be used. `q` is a point of the mesh near the leaf.
     pub fn collect(&mut self, ssvh: &Ssvh, lattice: Lattice, leaf: Block, q: DVec3, most: usize) -> bool {
         let centre = leaf.centre(lattice);
-        let [x, y, z] = corners(leaf.side).map(|lane| lane.map(f64::from));
+        let [x, y, z] = corners(leaf.width).map(|lane| lane.map(f64::from));
         let corners = std::array::from_fn(|n| centre + lattice.voxel * DVec3::new(x[n], y[n], z[n]));
         let limits = corners.map(|c: DVec3| (c - q).length());
         self.slots.clear();
@@ -99,7 +99,7 @@ impl CandidatePruner {
         }
         self.voxel = lattice.voxel;
         let scale = 1.0 / lattice.voxel;
-        let mut largest = leaf.side as f32;
+        let mut largest = leaf.width as f32;
         self.triangles.clear();
         self.triangles.extend(self.slots.iter().map(|&slot| {
             let (triangle, size) = TriangleF32::new(ssvh.triangle_at(slot), centre, scale);
@@ -118,9 +118,9 @@ impl CandidatePruner {
     /// which candidates matter to which octant.
     ///
     /// An octant reaches from its first node to one voxel beyond its last node along each axis.
-    /// `centres` are relative to the leaf's centre, in voxels. The octants have `side` nodes along
+    /// `centres` are relative to the leaf's centre, in voxels. The octants have `width` nodes along
     /// an axis.
-    pub fn measure(&mut self, depth: usize, centres: &EightPoints, side: i32) {
+    pub fn measure(&mut self, depth: usize, centres: &EightPoints, width: i32) {
         let Level { count, list, bounds, octants, nearest, .. } = &mut self.levels[depth];
         let list = &list[..*count];
         let bounds = at_least(bounds, *count);
@@ -132,7 +132,7 @@ impl CandidatePruner {
             bounds,
         });
         let octants = at_least(octants, *count);
-        dispatch(SelectOctants { bounds, nearest, ends: ends(side), slack: self.slack, octants });
+        dispatch(SelectOctants { bounds, nearest, ends: ends(width), slack: self.slack, octants });
     }
 
     /// Returns the nearest candidate to the centre of octant `n`, as [`measure`](Self::measure)
@@ -166,10 +166,10 @@ impl CandidatePruner {
     }
 
     /// Whether all nodes of a block are more than `above` voxels over the planes of all triangles
-    /// in the list of `depth`. The block has `side` nodes along an axis; its centre is relative to
+    /// in the list of `depth`. The block has `width` nodes along an axis; its centre is relative to
     /// the leaf's, in voxels.
-    pub fn is_above(&self, depth: usize, centre: [f32; 3], side: i32, above: f32) -> bool {
-        let half = 0.5 * (side - 1) as f32;
+    pub fn is_above(&self, depth: usize, centre: [f32; 3], width: i32, above: f32) -> bool {
+        let half = 0.5 * (width - 1) as f32;
         let least = above + self.slack;
         let list = self.levels[depth].list();
         list.iter().all(|&n| self.triangles[n as usize].heights(centre, half)[0] > least)
@@ -181,10 +181,10 @@ impl CandidatePruner {
         &self,
         depth: usize,
         centre: [f32; 3],
-        side: i32,
+        width: i32,
         is_excepted: impl Fn(u32) -> bool,
     ) -> bool {
-        let half = 0.5 * (side - 1) as f32;
+        let half = 0.5 * (width - 1) as f32;
         self.levels[depth].list().iter().all(|&n| {
             let n = n as usize;
             self.triangles[n].heights(centre, half)[1] < -self.slack && !is_excepted(self.slots[n])
@@ -259,15 +259,15 @@ fn at_least<T: Clone + Default>(all: &mut Vec<T>, count: usize) -> &mut [T] {
     &mut all[..count]
 }
 
-/// Returns the first and the last coordinate of a box of `side` nodes along an axis and the cells
+/// Returns the first and the last coordinate of a box of `width` nodes along an axis and the cells
 /// at them, in voxels from the centre of the nodes.
-fn ends(side: i32) -> [f32; 2] {
-    [0.5 * (1 - side) as f32, 0.5 * (1 + side) as f32]
+fn ends(width: i32) -> [f32; 2] {
+    [0.5 * (1 - width) as f32, 0.5 * (1 + width) as f32]
 }
 
 /// Returns the corners of the box that [`ends`] describes, z fastest.
-fn corners(side: i32) -> EightPoints {
-    let ends = ends(side);
+fn corners(width: i32) -> EightPoints {
+    let ends = ends(width);
     std::array::from_fn(|axis| std::array::from_fn(|n| ends[n >> (2 - axis) & 1]))
 }
 

@@ -25,21 +25,21 @@ fn check_leaf(mesh: &TriMesh, lattice: Lattice, origin: Ijk, shares: &[[f64; 3]]
         let list = pruner.list(depth).to_vec();
         for share in shares {
             let node = DVec3::from(block.origin.0.map(f64::from));
-            let p = lattice.voxel * (node + f64::from(block.side) * DVec3::from(*share));
+            let p = lattice.voxel * (node + f64::from(block.width) * DVec3::from(*share));
             let eight = ssvh.closest8_among(&list, &[p; 8]);
             assert!(eight.iter().all(|hit| *hit == ssvh.closest(p)), "{block:?} {p}");
         }
     };
-    let leaf = Block { origin, side: 8 };
+    let leaf = Block { origin, width: 8 };
     let q = ssvh.triangle(ssvh.closest(leaf.centre(lattice)).triangle).closest(leaf.centre(lattice)).point;
     let mut pruner = CandidatePruner::default();
     assert!(pruner.collect(&ssvh, lattice, leaf, q, usize::MAX));
     check(&mut pruner, 0, leaf);
     let centres = |block: Block| {
         let octants = block.children();
-        let side = octants[0].side;
+        let width = octants[0].width;
         let centre = |octant: Block, axis: usize| {
-            (octant.origin.0[axis] - origin.0[axis]) as f32 + 0.5 * (side - 1) as f32 - 3.5
+            (octant.origin.0[axis] - origin.0[axis]) as f32 + 0.5 * (width - 1) as f32 - 3.5
         };
         std::array::from_fn(|axis| octants.map(|octant| centre(octant, axis)))
     };

@@ -4,7 +4,7 @@
 //! pseudonormal(c) > 0; inside it is negative. For an edge the two triangles have the same angle,
 //! so their normals are summed; for a vertex each triangle counts by its angle there.
 
-use crate::geom::triangle::{Feature, Side, Triangle};
+use crate::geom::triangle::{Feature, Triangle, TriangleSide};
 use crate::mesh::{Topology, TriMesh};
 use crate::ssvh::Ssvh;
 use glam::DVec3;
@@ -39,7 +39,7 @@ impl Pseudonormals {
     /// always the same mesh.
     pub(super) fn of(&self, oriented: Oriented<'_>, id: u32, feature: Feature) -> DVec3 {
         let Oriented { mesh, topology, triangles } = oriented;
-        let vertex = |side: Side| self.at_vertex(oriented, mesh.triangles[id as usize][side.index()]);
+        let vertex = |side: TriangleSide| self.at_vertex(oriented, mesh.triangles[id as usize][side.index()]);
         match feature {
             Feature::Face => triangles.triangle(id).normal,
             Feature::Vertex(side) => vertex(side),
@@ -71,7 +71,7 @@ impl Pseudonormals {
 
 /// Returns the normal of `triangle` times its angle at mesh vertex `v`.
 fn angle_weighted(triangle: &Triangle, vertices: [u32; 3], v: u32) -> DVec3 {
-    let Some(&side) = Side::ALL.iter().find(|s| vertices[s.index()] == v) else { return DVec3::ZERO };
+    let Some(&side) = TriangleSide::ALL.iter().find(|s| vertices[s.index()] == v) else { return DVec3::ZERO };
     let corner = triangle.corners[side.index()];
     let to_next = triangle.corners[side.next().index()] - corner;
     let to_last = triangle.corners[side.next().next().index()] - corner;

@@ -68,7 +68,7 @@ fn touches(distance: &SignedDistance, t: u32, feature: MeshFeature) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geom::triangle::Side;
+    use crate::geom::triangle::TriangleSide;
     use crate::mesh::{Topology, TriMesh};
     use glam::DVec3;
 
@@ -95,11 +95,11 @@ mod tests {
     const FACE: Feature = Feature::Face;
 
     fn edge(k: usize) -> Feature {
-        Feature::Edge(Side::ALL[k])
+        Feature::Edge(TriangleSide::ALL[k])
     }
 
     fn vertex(k: usize) -> Feature {
-        Feature::Vertex(Side::ALL[k])
+        Feature::Vertex(TriangleSide::ALL[k])
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! and two at the ends of each edge. Each region is convex, so a segment crosses it in one
 //! interval.
 
-use crate::geom::triangle::{Feature, Side, Triangle};
+use crate::geom::triangle::{Feature, Triangle, TriangleSide};
 use glam::DVec3;
 
 /// An interval of the segment within one region.
@@ -45,7 +45,7 @@ fn cuts(triangle: &Triangle, p1: DVec3, p2: DVec3) -> ([f64; MAX_CUTS], usize) {
         }
     };
     let (outside1, outside2) = (triangle.outside(p1), triangle.outside(p2));
-    for side in Side::ALL {
+    for side in TriangleSide::ALL {
         let k = side.index();
         cut(outside1[k], outside2[k]);
         let edge = triangle.edge(side);

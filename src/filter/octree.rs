@@ -84,13 +84,13 @@ impl Filter<'_> {
     ) {
         let children = block.children();
         let centres = children.map(|child| child.centre(self.lattice));
-        let hits = if children[0].side <= MAX_WIDTH_TOGETHER {
+        let hits = if children[0].width <= MAX_WIDTH_TOGETHER {
             self.distance.ssvh().closest8(&centres, triangle)
         } else {
             centres.map(|centre| self.distance.ssvh().closest_from(centre, triangle))
         };
         for ((child, centre), hit) in children.into_iter().zip(centres).zip(hits) {
-            if !self.slab.computes(child.origin, child.side) {
+            if !self.slab.computes(child.origin, child.width) {
                 continue;
             }
             let own = u64::from(self.slab.owns(child.origin));
@@ -102,7 +102,7 @@ impl Filter<'_> {
                 continue;
             }
             statistics.octree_queries_valid += own;
-            if child.side > smallest {
+            if child.width > smallest {
                 self.octree(child, sample.triangle, smallest, statistics, visit);
             } else {
                 visit(child, Verdict::Kept { triangle: sample.triangle, distance: sample.distance });

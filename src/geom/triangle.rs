@@ -10,11 +10,11 @@ use pulp::Simd;
 
 /// A corner or an edge of a triangle: 0, 1 or 2. Edge k runs from corner k to corner k + 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Side(u8);
+pub struct TriangleSide(u8);
 
-impl Side {
+impl TriangleSide {
     /// The three sides.
-    pub const ALL: [Side; 3] = [Side(0), Side(1), Side(2)];
+    pub const ALL: [TriangleSide; 3] = [TriangleSide(0), TriangleSide(1), TriangleSide(2)];
 
     /// Returns the number: 0, 1 or 2.
     pub const fn index(self) -> usize {
@@ -22,8 +22,8 @@ impl Side {
     }
 
     /// Returns the side after this one, cyclically.
-    pub const fn next(self) -> Side {
-        Side((self.0 + 1) % 3)
+    pub const fn next(self) -> TriangleSide {
+        TriangleSide((self.0 + 1) % 3)
     }
 }
 
@@ -33,9 +33,9 @@ pub enum Feature {
     /// In the interior.
     Face,
     /// In the interior of an edge.
-    Edge(Side),
+    Edge(TriangleSide),
     /// At a corner.
-    Vertex(Side),
+    Vertex(TriangleSide),
 }
 
 /// Twice the area relative to the squared longest edge below which a triangle counts as a segment:
@@ -59,14 +59,14 @@ pub struct Triangle {
 /// A triangle for the distances of many points.
 #[derive(Clone, Copy, Debug)]
 pub struct SplatTriangle<S: Simd> {
-    sides: [SideInLanes<S>; 3],
+    sides: [SplatEdge<S>; 3],
     corner: Vec3F64s<S>,
     normal: Vec3F64s<S>,
 }
 
 /// An edge of a triangle.
 #[derive(Clone, Copy, Debug)]
-struct SideInLanes<S: Simd> {
+struct SplatEdge<S: Simd> {
     corner: Vec3F64s<S>,
     /// In the triangle's plane, perpendicular to the edge.
     outward: Vec3F64s<S>,
@@ -101,11 +101,11 @@ impl<S: Simd> SplatTriangle<S> {
     }
 }
 
-impl<S: Simd> SideInLanes<S> {
+impl<S: Simd> SplatEdge<S> {
     #[inline(always)]
-    fn new(a: Vec3F64s<S>, b: Vec3F64s<S>, normal: Vec3F64s<S>, is_flipped: bool) -> SideInLanes<S> {
+    fn new(a: Vec3F64s<S>, b: Vec3F64s<S>, normal: Vec3F64s<S>, is_flipped: bool) -> SplatEdge<S> {
         let (start, end) = if is_flipped { (b, a) } else { (a, b) };
-        SideInLanes { corner: a, outward: (b - a).cross(normal), start, end }
+        SplatEdge { corner: a, outward: (b - a).cross(normal), start, end }
     }
 
     /// See [`Triangle::outside`].
@@ -163,7 +163,7 @@ impl Triangle {
             return height * height;
         }
         let mut best = f64::INFINITY;
-        for side in Side::ALL {
+        for side in TriangleSide::ALL {
             // The closest edge is one whose plane the point is not inside of; a needle (all zero)
             // takes all three.
             if outside[side.index()] >= 0.0 {
@@ -182,9 +182,9 @@ impl Triangle {
         let normal = Vec3F64s::splat(simd, self.normal.to_array());
         SplatTriangle {
             sides: [
-                SideInLanes::new(a, b, normal, self.flipped & 1 == 1),
-                SideInLanes::new(b, c, normal, self.flipped >> 1 & 1 == 1),
-                SideInLanes::new(c, a, normal, self.flipped >> 2 & 1 == 1),
+                SplatEdge::new(a, b, normal, self.flipped & 1 == 1),
+                SplatEdge::new(b, c, normal, self.flipped >> 1 & 1 == 1),
+                SplatEdge::new(c, a, normal, self.flipped >> 2 & 1 == 1),
             ],
             corner: a,
             normal,
@@ -193,7 +193,7 @@ impl Triangle {
 
     /// Returns the ends of an edge, the one with the lower vertex number first.
     #[inline(always)]
-    fn ends(&self, side: Side) -> (Side, Side) {
+    fn ends(&self, side: TriangleSide) -> (TriangleSide, TriangleSide) {
         if self.flipped >> side.0 & 1 == 1 { (side.next(), side) } else { (side, side.next()) }
     }
 
@@ -211,7 +211,7 @@ impl Triangle {
         }
         let mut best =
             ClosestPoint { point: DVec3::NAN, distance_squared: f64::INFINITY, feature: Feature::Face };
-        for side in Side::ALL {
+        for side in TriangleSide::ALL {
             if outside[side.index()] >= 0.0 {
                 let (point, distance_squared, feature) = self.segment(side, p);
                 if distance_squared < best.distance_squared {
@@ -229,9 +229,9 @@ impl Triangle {
         let beyond = self.outside(p).map(|x| x >= 0.0);
         let side = match beyond {
             [false, false, false] => return Feature::Face,
-            [true, false, false] => Side::ALL[0],
-            [false, true, false] => Side::ALL[1],
-            [false, false, true] => Side::ALL[2],
+            [true, false, false] => TriangleSide::ALL[0],
+            [false, true, false] => TriangleSide::ALL[1],
+            [false, false, true] => TriangleSide::ALL[2],
             _ => return self.closest(p).feature,
         };
         let (first, second) = self.ends(side);
@@ -257,7 +257,7 @@ impl Triangle {
             return [twice_area[2] / sum, twice_area[0] / sum];
         }
         // A needle: the position along its longest edge.
-        let longest = Side::ALL
+        let longest = TriangleSide::ALL
             .into_iter()
             .max_by(|&j, &k| self.edge(j).length_squared().total_cmp(&self.edge(k).length_squared()))
             .expect("three sides");
@@ -270,7 +270,7 @@ impl Triangle {
     }
 
     /// Edge vector k, from corner k to the next.
-    pub fn edge(&self, side: Side) -> DVec3 {
+    pub fn edge(&self, side: TriangleSide) -> DVec3 {
         self.corners[side.next().index()] - self.corners[side.index()]
     }
 
@@ -289,7 +289,7 @@ impl Triangle {
     /// Closest point on an edge: point, squared distance, feature. Evaluated from the end with the
     /// lower vertex number, so that the triangles of an edge agree.
     #[inline(always)]
-    fn segment(&self, side: Side, p: DVec3) -> (DVec3, f64, Feature) {
+    fn segment(&self, side: TriangleSide, p: DVec3) -> (DVec3, f64, Feature) {
         let (first, second) = self.ends(side);
         let (a, b) = (self.corners[first.index()], self.corners[second.index()]);
         let edge = b - a;
@@ -319,12 +319,12 @@ mod tests {
         let t = triangle();
         let cases = [
             ([1.0, 1.0, 2.0], Feature::Face, 4.0),
-            ([2.0, -1.0, 1.0], Feature::Edge(Side(0)), 2.0),
-            ([4.0, 4.0, 0.0], Feature::Edge(Side(1)), 6.4 * 6.4 * 0.25),
-            ([-2.0, 1.0, 0.0], Feature::Edge(Side(2)), 4.0),
-            ([-1.0, -1.0, 1.0], Feature::Vertex(Side(0)), 3.0),
-            ([6.0, -1.0, 0.0], Feature::Vertex(Side(1)), 5.0),
-            ([-1.0, 5.0, 0.0], Feature::Vertex(Side(2)), 5.0),
+            ([2.0, -1.0, 1.0], Feature::Edge(TriangleSide(0)), 2.0),
+            ([4.0, 4.0, 0.0], Feature::Edge(TriangleSide(1)), 6.4 * 6.4 * 0.25),
+            ([-2.0, 1.0, 0.0], Feature::Edge(TriangleSide(2)), 4.0),
+            ([-1.0, -1.0, 1.0], Feature::Vertex(TriangleSide(0)), 3.0),
+            ([6.0, -1.0, 0.0], Feature::Vertex(TriangleSide(1)), 5.0),
+            ([-1.0, 5.0, 0.0], Feature::Vertex(TriangleSide(2)), 5.0),
         ];
         for (p, feature, d2) in cases {
             let p = DVec3::from(p);

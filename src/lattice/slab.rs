@@ -52,10 +52,10 @@ impl Slab {
         (self.from..self.to).contains(&origin.0[0])
     }
 
-    /// Whether the slab owns any node of the block at `origin` with the given side.
-    pub fn meets(&self, origin: Ijk, side: i32) -> bool {
+    /// Whether the slab owns any node of the block at `origin` with the given width.
+    pub fn meets(&self, origin: Ijk, width: i32) -> bool {
         let x = origin.0[0];
-        x < self.to && x.saturating_add(side) > self.from
+        x < self.to && x.saturating_add(width) > self.from
     }
 
     /// Returns the number of leaves between the leaf at `origin`, which is computed, and the nearer
@@ -66,12 +66,12 @@ impl Slab {
         (0..most).find(|n| !is_within(n)).unwrap_or(most)
     }
 
-    /// Whether any node of the block at `origin` with the given side is computed.
-    pub fn computes(&self, origin: Ijk, side: i32) -> bool {
+    /// Whether any node of the block at `origin` with the given width is computed.
+    pub fn computes(&self, origin: Ijk, width: i32) -> bool {
         let x = origin.0[0];
         let first = self.from.saturating_sub(self.halo);
         let end = self.to.saturating_add(self.halo);
-        x < end && x.saturating_add(side) > first
+        x < end && x.saturating_add(width) > first
     }
 }
 

@@ -39,20 +39,20 @@ pub(super) fn has_lines(degenerate: &[u32], triangles: &[[u32; 3]], vertices: &[
 /// Takes out the triangles with the numbers `degenerate`, which are all that have no area. What
 /// remains keeps its order. Returns how many triangles with an area were split.
 pub(super) fn take_out(degenerate: &[u32], triangles: &mut Vec<[u32; 3]>, vertices: &[[f64; 3]]) -> usize {
-    let mut pieces = Pieces::new(degenerate, triangles, vertices);
-    pieces.straighten();
-    let Pieces { touched, mut all, split, .. } = pieces;
-    all.retain(|piece| piece.is_there);
+    let mut fragments = Fragments::new(degenerate, triangles, vertices);
+    fragments.straighten();
+    let Fragments { touched, mut all, split, .. } = fragments;
+    all.retain(|fragment| fragment.is_there);
     // Those of a triangle stay in the order in which they were made.
-    all.sort_by_key(|piece| piece.origin);
+    all.sort_by_key(|fragment| fragment.origin);
     let mut kept = Vec::with_capacity(triangles.len());
     let (mut all, mut touched) = (all.into_iter().peekable(), touched.into_iter().peekable());
     let mut gone = degenerate.iter().copied().peekable();
     for (t, triangle) in (0..).zip(triangles.iter()) {
         let is_gone = gone.next_if_eq(&t).is_some();
         if touched.next_if_eq(&t).is_some() {
-            while let Some(piece) = all.next_if(|piece| piece.origin == t) {
-                kept.push(piece.corners);
+            while let Some(fragment) = all.next_if(|fragment| fragment.origin == t) {
+                kept.push(fragment.corners);
             }
         } else if !is_gone {
             kept.push(*triangle);
@@ -94,7 +94,7 @@ fn longest_edge(t: [u32; 3], vertices: &[[f64; 3]]) -> Option<(usize, f64)> {
 }
 
 /// A triangle, or a part of one.
-struct Piece {
+struct Fragment {
     corners: [u32; 3],
     /// The number of the triangle that it is, or is a part of.
     origin: u32,
@@ -102,12 +102,12 @@ struct Piece {
 }
 
 /// The triangles without area and those at their edges, with what becomes of them.
-struct Pieces<'a> {
+struct Fragments<'a> {
     vertices: &'a [[f64; 3]],
     /// The numbers of the triangles that these were in the beginning, ascending.
     touched: Vec<u32>,
-    all: Vec<Piece>,
-    /// The pieces that run along an edge in its direction; some may be gone.
+    all: Vec<Fragment>,
+    /// The fragments that run along an edge in its direction; some may be gone.
     by_edge: HashMap<[u32; 2], Vec<u32>>,
     /// Those without area, the longest first, then in the order of their numbers.
     waiting: BinaryHeap<(Length, Reverse<u32>)>,
@@ -133,7 +133,7 @@ impl Ord for Length {
     }
 }
 
-impl<'a> Pieces<'a> {
+impl<'a> Fragments<'a> {
     /// Returns the triangles with the numbers `degenerate` and those at their edges.
     fn new(degenerate: &[u32], triangles: &[[u32; 3]], vertices: &'a [[f64; 3]]) -> Self {
         let mut is_near = vec![false; vertices.len()];
@@ -152,7 +152,7 @@ impl<'a> Pieces<'a> {
         };
         let numbers = 0..triangles.len() as u32;
         let touched: Vec<u32> = numbers.into_par_iter().filter(|&t| touches(triangles[t as usize])).collect();
-        let mut pieces = Pieces {
+        let mut fragments = Fragments {
             vertices,
             touched: Vec::new(),
             all: Vec::new(),
@@ -160,8 +160,8 @@ impl<'a> Pieces<'a> {
             waiting: BinaryHeap::new(),
             split: HashSet::new(),
         };
-        touched.iter().for_each(|&t| pieces.add(triangles[t as usize], t));
-        Pieces { touched, ..pieces }
+        touched.iter().for_each(|&t| fragments.add(triangles[t as usize], t));
+        Fragments { touched, ..fragments }
     }
 
     fn add(&mut self, corners: [u32; 3], origin: u32) {
@@ -172,22 +172,22 @@ impl<'a> Pieces<'a> {
             self.waiting.push((Length(length), Reverse(number)));
         }
         sides(corners).into_iter().for_each(|side| self.by_edge.entry(side).or_default().push(number));
-        self.all.push(Piece { corners, origin, is_there: true });
+        self.all.push(Fragment { corners, origin, is_there: true });
     }
 
-    /// Takes out all pieces without area.
+    /// Takes out all fragments without area.
     fn straighten(&mut self) {
-        /// Steps for each piece without area in the beginning. Chains of them take one or two each;
+        /// Steps for each fragment without area in the beginning. Chains of them take one or two each;
         /// only what was made to, or is too small for the test on the line, takes more.
         const STEPS: usize = 32;
         let mut steps = STEPS * self.waiting.len();
         while let Some((_, Reverse(number))) = self.waiting.pop() {
-            let piece = &mut self.all[number as usize];
-            if !std::mem::replace(&mut piece.is_there, false) || steps == 0 {
+            let fragment = &mut self.all[number as usize];
+            if !std::mem::replace(&mut fragment.is_there, false) || steps == 0 {
                 continue;
             }
             steps -= 1;
-            let corners = piece.corners;
+            let corners = fragment.corners;
             if let Some((k, _)) = longest_edge(corners, self.vertices) {
                 let [from, to, middle] = [0, 1, 2].map(|i| corners[(k + i) % 3]);
                 // Of neighbours that run the same way one is better than none.
@@ -199,17 +199,17 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// Returns the first piece that runs along an edge in its direction.
+    /// Returns the first fragment that runs along an edge in its direction.
     fn along(&self, edge: [u32; 2]) -> Option<u32> {
-        let pieces = self.by_edge.get(&edge)?;
-        pieces.iter().copied().find(|&number| self.all[number as usize].is_there)
+        let fragments = self.by_edge.get(&edge)?;
+        fragments.iter().copied().find(|&number| self.all[number as usize].is_there)
     }
 
-    /// Splits a piece at the vertex `middle`, which lies on its edge between `ends`.
+    /// Splits a fragment at the vertex `middle`, which lies on its edge between `ends`.
     fn halve(&mut self, number: u32, ends: [u32; 2], middle: u32) {
-        let piece = &mut self.all[number as usize];
-        piece.is_there = false;
-        let (corners, origin) = (piece.corners, piece.origin);
+        let fragment = &mut self.all[number as usize];
+        fragment.is_there = false;
+        let (corners, origin) = (fragment.corners, fragment.origin);
         if !is_degenerate(corners, self.vertices) {
             self.split.insert(origin);
         }

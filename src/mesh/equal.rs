@@ -34,9 +34,9 @@ pub(super) fn first_equal<T: Copy + Sync, K: Copy + Default + Eq + Send + Sync>(
         let mut next = begin.clone();
         let mut dealt = vec![(K::default(), 0); part.len()];
         for (i, &key) in keys.iter().enumerate() {
-            let place = &mut next[shard_of(&key)];
-            dealt[*place] = (key, (chunk * CHUNK + i) as u32);
-            *place += 1;
+            let end = &mut next[shard_of(&key)];
+            dealt[*end] = (key, (chunk * CHUNK + i) as u32);
+            *end += 1;
         }
         (dealt, begin)
     };

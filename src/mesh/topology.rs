@@ -4,7 +4,7 @@
 //! Half-edge 3 t + k is edge k of triangle t, from its corner k to its corner k + 1.
 
 use super::TriMesh;
-use crate::geom::triangle::Side;
+use crate::geom::triangle::TriangleSide;
 use crate::geom::union_find::UnionFind;
 use rayon::prelude::*;
 
@@ -68,12 +68,16 @@ impl Topology {
 
     /// Returns the triangles at edge `side` of `triangle`, each with the side it has there,
     /// starting with the triangle itself.
-    pub fn around_edge(&self, triangle: u32, side: Side) -> impl Iterator<Item = (u32, Side)> + '_ {
+    pub fn around_edge(
+        &self,
+        triangle: u32,
+        side: TriangleSide,
+    ) -> impl Iterator<Item = (u32, TriangleSide)> + '_ {
         let start = 3 * triangle + side.index() as u32;
         std::iter::successors(Some(start), move |&h| {
             Some(self.next_around_edge[h as usize]).filter(|&next| next != start)
         })
-        .map(|h| (h / 3, Side::ALL[(h % 3) as usize]))
+        .map(|h| (h / 3, TriangleSide::ALL[(h % 3) as usize]))
     }
 
     /// Returns the triangles at `vertex`, ascending.
@@ -168,9 +172,9 @@ fn half_edges_by_lower_vertex(mesh: &TriMesh) -> Vec<HalfEdge> {
     let mut sorted = vec![HalfEdge { ends: [0; 2], number: 0, ascending: true }; count];
     for number in 0..count {
         let h = half_edge(number);
-        let place = &mut next[h.ends[0] as usize];
-        sorted[*place as usize] = h;
-        *place += 1;
+        let end = &mut next[h.ends[0] as usize];
+        sorted[*end as usize] = h;
+        *end += 1;
     }
     let mut groups: Vec<&mut [HalfEdge]> = sorted.chunk_by_mut(|a, b| a.ends[0] == b.ends[0]).collect();
     groups.par_iter_mut().with_min_len(1024).for_each(|g| g.sort_unstable_by_key(|h| (h.ends[1], h.number)));
@@ -195,7 +199,7 @@ mod tests {
         assert!(topology.defects().is_closed());
         assert_eq!((topology.edges(), topology.components()), (6, 1));
         assert_eq!(topology.around_vertex(3), [1, 2, 3]);
-        let around: Vec<u32> = topology.around_edge(0, Side::ALL[0]).map(|(t, _)| t).collect();
+        let around: Vec<u32> = topology.around_edge(0, TriangleSide::ALL[0]).map(|(t, _)| t).collect();
         assert_eq!(around, [0, 3]);
     }
 

@@ -63,9 +63,9 @@ impl<E: From<VdbError>> BandStore<E> for StoredBand {
         }
         let (mut origins, mut sides) = (Vec::new(), Vec::new());
         for &(origin, side) in &batch.inside_blocks {
-            owned_parts(Block { origin, side }, slab, &mut |block| {
+            owned_parts(Block { origin, width: side }, slab, &mut |block| {
                 origins.push(block.origin);
-                sides.push(block.side as u32);
+                sides.push(block.width as u32);
             });
         }
         Ok(self.surface.fill_inside(&origins, &sides)?)
@@ -74,10 +74,10 @@ impl<E: From<VdbError>> BandStore<E> for StoredBand {
 
 /// The largest blocks that make up what `slab` owns of a block.
 fn owned_parts(block: Block, slab: Slab, visit: &mut impl FnMut(Block)) {
-    let last = block.origin + Ijk::new(block.side - LEAF_DIM, 0, 0);
+    let last = block.origin + Ijk::new(block.width - LEAF_DIM, 0, 0);
     if slab.owns(block.origin) && slab.owns(last) {
         visit(block);
-    } else if slab.meets(block.origin, block.side) {
+    } else if slab.meets(block.origin, block.width) {
         block.children().into_iter().for_each(|child| owned_parts(child, slab, visit));
     }
 }

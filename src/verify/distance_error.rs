@@ -4,7 +4,7 @@ use super::case::{Case, weight};
 use super::report::{DistanceReport, Histogram, Statistics};
 use super::sampling::{Draw, each, worst};
 use super::topology::{edges, ends};
-use crate::geom::triangle::Side;
+use crate::geom::triangle::TriangleSide;
 use crate::run::Cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -90,12 +90,12 @@ fn at_vertices(case: &Case) -> Result<Statistics, Cancelled> {
 /// Samples the midpoints of edges.
 fn at_midpoints(case: &Case) -> Result<Statistics, Cancelled> {
     let mesh = &case.output.mesh;
-    let first_sides: Vec<(u32, Side)> = edges(case.output).collect();
+    let first_sides: Vec<(u32, TriangleSide)> = edges(case.output).collect();
     let begin: Vec<usize> = (0..=mesh.triangles.len() as u32)
         .into_par_iter()
         .map(|t| first_sides.partition_point(|&(u, _)| u < t))
         .collect();
-    let order: Vec<(u32, Side)> = case
+    let order: Vec<(u32, TriangleSide)> = case
         .tree
         .order()
         .iter()

@@ -1,6 +1,6 @@
 //! Edges of INPUT about which the true offset surface is round or sharp.
 
-use crate::geom::triangle::Side;
+use crate::geom::triangle::TriangleSide;
 use crate::mesh::{Topology, TriMesh};
 use crate::ssvh::Ssvh;
 use glam::DVec3;
@@ -56,13 +56,13 @@ pub(super) fn bent_edges(
 ) -> Vec<BentEdge> {
     let mut found = Vec::new();
     for t in 0..mesh.triangles.len() as u32 {
-        for side in Side::ALL {
+        for side in TriangleSide::ALL {
             let mut ring = topology.around_edge(t, side).skip(1);
             let (Some((u, other)), None) = (ring.next(), ring.next()) else { continue };
             if u < t {
                 continue;
             }
-            let corner = |t: u32, side: Side| mesh.triangles[t as usize][side.index()];
+            let corner = |t: u32, side: TriangleSide| mesh.triangles[t as usize][side.index()];
             let vertices = [corner(t, side), corner(t, side.next())];
             if corner(u, other) != vertices[1] {
                 continue;

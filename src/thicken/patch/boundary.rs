@@ -1,7 +1,7 @@
 //! The boundary of an open mesh: its loops, and the walls that stand on it.
 
 use crate::distance::Sample;
-use crate::geom::triangle::{Feature, Side};
+use crate::geom::triangle::{Feature, TriangleSide};
 use crate::mesh::{Topology, TriMesh};
 use crate::thicken::PatchError;
 use glam::DVec3;
@@ -31,7 +31,7 @@ struct BoundaryEdge {
     /// Both ends, in the direction of the triangle.
     ends: [u32; 2],
     triangle: u32,
-    side: Side,
+    side: TriangleSide,
 }
 
 impl Boundary {
@@ -46,7 +46,7 @@ impl Boundary {
         let mut edges = vec![false; 3 * mesh.triangles.len()];
         let mut starts = Vec::with_capacity(defects.boundary_edges);
         for (t, triangle) in (0u32..).zip(&mesh.triangles) {
-            for side in Side::ALL {
+            for side in TriangleSide::ALL {
                 let [a, b] = [triangle[side.index()], triangle[side.next().index()]];
                 let mut ring = topology.around_edge(t, side).skip(1);
                 let (other, more) = (ring.next(), ring.next());
@@ -124,7 +124,7 @@ impl Boundary {
 }
 
 /// Returns the unit vector in the plane of a triangle that leads out of it across an edge.
-fn outward_of(corners: [DVec3; 3], side: Side) -> DVec3 {
+fn outward_of(corners: [DVec3; 3], side: TriangleSide) -> DVec3 {
     let [a, b, c] = [side, side.next(), side.next().next()].map(|s| corners[s.index()]);
     let along = (b - a).normalize_or_zero();
     let inward = (c - a) - along * (c - a).dot(along);
@@ -182,7 +182,7 @@ fn fan(
         let mut at = first;
         loop {
             let corners = mesh.triangles[at as usize];
-            let Some(corner) = Side::ALL.into_iter().find(|s| corners[s.index()] == v) else { break };
+            let Some(corner) = TriangleSide::ALL.into_iter().find(|s| corners[s.index()] == v) else { break };
             let side = if forward { corner } else { corner.next().next() };
             let Some((other, _)) = topology.around_edge(at, side).nth(1) else { break };
             if !visit(other) {

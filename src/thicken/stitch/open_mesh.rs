@@ -2,7 +2,7 @@
 
 use crate::band::SignField;
 use crate::contour::{Precision, contour_by_edge};
-use crate::geom::triangle::Side;
+use crate::geom::triangle::TriangleSide;
 use crate::lattice::Lattice;
 use crate::mesh::{Topology, TriMesh};
 use crate::run::RunSettings;
@@ -93,7 +93,7 @@ impl OpenMesh {
             let around = self.topology.around_vertex(v).to_vec();
             let starts = |&&t: &&u32| {
                 let corners = self.mesh.triangles[t as usize];
-                Side::ALL.into_iter().any(|s| corners[s.index()] == v && self.is_rim(t, s))
+                TriangleSide::ALL.into_iter().any(|s| corners[s.index()] == v && self.is_rim(t, s))
             };
             if around.iter().filter(starts).count() > 1 {
                 for t in around {
@@ -117,13 +117,13 @@ impl OpenMesh {
     /// Records that rims may have come to a triangle and its neighbours.
     fn record_change(&mut self, t: u32) {
         self.near_rims.push(t);
-        for side in Side::ALL {
+        for side in TriangleSide::ALL {
             self.near_rims.extend(self.topology.around_edge(t, side).skip(1).map(|(other, _)| other));
         }
     }
 
     /// Whether a triangle is kept and the one across an edge is not.
-    fn is_rim(&self, t: u32, side: Side) -> bool {
+    fn is_rim(&self, t: u32, side: TriangleSide) -> bool {
         self.kept[t as usize]
             && self.topology.around_edge(t, side).nth(1).is_none_or(|(other, _)| !self.kept[other as usize])
     }
@@ -191,7 +191,7 @@ impl OpenMesh {
             if !corners.into_iter().all(|v| may_have[v as usize]) {
                 return None;
             }
-            for side in Side::ALL {
+            for side in TriangleSide::ALL {
                 let mut neighbours = self.topology.around_edge(t, side).skip(1).peekable();
                 // The rest of a large component of the inset was not contoured.
                 neighbours.peek()?;
@@ -219,7 +219,7 @@ impl OpenMesh {
         let mut next = BTreeMap::new();
         for t in near {
             let triangle = self.mesh.triangles[t as usize];
-            for side in Side::ALL.into_iter().filter(|&side| self.is_rim(t, side)) {
+            for side in TriangleSide::ALL.into_iter().filter(|&side| self.is_rim(t, side)) {
                 next.insert(triangle[side.index()], triangle[side.next().index()]);
             }
         }
