@@ -2,7 +2,7 @@
 
 use super::report::TopologyReport;
 use super::welded::Welded;
-use crate::geom::triangle::Side;
+use crate::geom::triangle::TriangleSide;
 use crate::mesh::TriMesh;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -51,16 +51,16 @@ fn used_vertices(welded: &Welded) -> usize {
 }
 
 /// Returns the undirected edges of a mesh, each once, by the first triangle and side.
-pub(super) fn edges(welded: &Welded) -> impl ParallelIterator<Item = (u32, Side)> + '_ {
+pub(super) fn edges(welded: &Welded) -> impl ParallelIterator<Item = (u32, TriangleSide)> + '_ {
     (0..welded.mesh.triangles.len() as u32).into_par_iter().flat_map_iter(move |t| {
         let is_first =
-            move |&side: &Side| welded.topology.around_edge(t, side).all(|other| other >= (t, side));
-        Side::ALL.into_iter().filter(is_first).map(move |side| (t, side))
+            move |&side: &TriangleSide| welded.topology.around_edge(t, side).all(|other| other >= (t, side));
+        TriangleSide::ALL.into_iter().filter(is_first).map(move |side| (t, side))
     })
 }
 
 /// Returns the ends of a directed edge.
-pub(super) fn ends(mesh: &TriMesh, t: u32, side: Side) -> [u32; 2] {
+pub(super) fn ends(mesh: &TriMesh, t: u32, side: TriangleSide) -> [u32; 2] {
     let triangle = mesh.triangles[t as usize];
     [triangle[side.index()], triangle[side.next().index()]]
 }
@@ -69,14 +69,14 @@ pub(super) fn ends(mesh: &TriMesh, t: u32, side: Side) -> [u32; 2] {
 fn count_edges(welded: &Welded, report: &mut TopologyReport) {
     let mesh = &welded.mesh;
     report.edges = edges(welded).count();
-    let is_bad = |&(t, side): &(u32, Side)| {
+    let is_bad = |&(t, side): &(u32, TriangleSide)| {
         let mut ring = welded.topology.around_edge(t, side).skip(1);
         match (ring.next(), ring.next()) {
             (Some((u, other)), None) => ends(mesh, t, side) == ends(mesh, u, other),
             _ => true,
         }
     };
-    let bad: Vec<(u32, Side)> = edges(welded).filter(is_bad).collect();
+    let bad: Vec<(u32, TriangleSide)> = edges(welded).filter(is_bad).collect();
     for (t, side) in bad {
         let at = ends(mesh, t, side).map(|v| mesh.vertices[v as usize]);
         let (count, first) = match welded.topology.around_edge(t, side).count() {
@@ -119,7 +119,7 @@ impl Fan {
         let mut count = 0;
         while let Some(t) = self.waiting.pop() {
             count += 1;
-            for side in Side::ALL {
+            for side in TriangleSide::ALL {
                 if !ends(&welded.mesh, t, side).contains(&vertex) {
                     continue;
                 }
@@ -170,7 +170,7 @@ fn count_duplicates(welded: &Welded, report: &mut TopologyReport) {
         vertices
     };
     let repeats = |&t: &u32| {
-        let mut ring = welded.topology.around_edge(t, Side::ALL[0]).skip(1);
+        let mut ring = welded.topology.around_edge(t, TriangleSide::ALL[0]).skip(1);
         ring.any(|(other, _)| other < t && sorted(other) == sorted(t))
     };
     let numbers = 0..welded.mesh.triangles.len() as u32;
