@@ -25,7 +25,7 @@ impl Aabb {
         Aabb { lo: self.lo - margin, hi: self.hi + margin }
     }
 
-    /// Side lengths.
+    /// Returns the side lengths.
     pub fn size(&self) -> DVec3 {
         self.hi - self.lo
     }
@@ -36,7 +36,7 @@ impl Aabb {
         self.lo * 0.5 + self.hi * 0.5
     }
 
-    /// Length of the diagonal.
+    /// Returns the length of the diagonal.
     pub fn diagonal(&self) -> f64 {
         self.size().length()
     }

@@ -17,9 +17,8 @@ pub fn orient3d(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> f64 {
     robust::orient3d(coord(b), coord(a), coord(c), coord(d))
 }
 
-/// What the rounding errors of a determinant of three rows are below, as a part of the sum of the
-/// sizes of its products: the first bound of Shewchuk's adaptive test (1997), (7 + 56 e) e with e =
-/// 2^-53.
+/// Bound of the rounding error of a determinant of three rows, relative to the sum of the sizes of
+/// its products: the first bound of Shewchuk's adaptive test (1997), (7 + 56 e) e with e = 2^-53.
 const ROUNDING: f64 = (7.0 + 56.0 * (0.5 * f64::EPSILON)) * (0.5 * f64::EPSILON);
 
 /// Whether `above` sees the triangle abc counter-clockwise and `below` clockwise, both strictly:

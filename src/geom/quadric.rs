@@ -1,7 +1,7 @@
 //! The quadratic error function (QEF, Ju et al. 2002): the sum of squared distances to planes.
 //!
-//! Its minimiser is found freely, or within half-spaces. For a sheet of the contour the planes are the
-//! tangent planes at its crossings.
+//! Its minimiser is found freely, or within half-spaces. For a sheet of the contour the planes are
+//! the tangent planes at its crossings.
 
 use crate::geom::sym3::Sym3;
 use glam::DVec3;
@@ -10,13 +10,14 @@ use glam::DVec3;
 ///
 /// Along their eigenvectors the minimiser stays at the mean of the crossings.
 ///
-/// For two planes that meet at an exterior angle a, the ratio is tan^2(a / 2): 1e-3 keeps creases above
-/// 3.6 degrees. Larger values blunt weaker creases (1e-2: 11 degrees, 1e-1: 35 degrees). Smaller ones
-/// place vertices by the noise of the normals: an error e of a tangent plane moves the minimiser along the
-/// weak direction by e / sqrt(ratio), 32 e here.
+/// For two planes that meet at an exterior angle a, the ratio is tan^2(a / 2): 1e-3 keeps creases
+/// above 3.6 degrees. Larger values blunt weaker creases (1e-2: 11 degrees, 1e-1: 35 degrees).
+/// Smaller ones place vertices by the noise of the normals: an error e of a tangent plane moves the
+/// minimiser along the weak direction by e / sqrt(ratio), 32 e here.
 pub const CUTOFF: f64 = 1e-3;
 
-/// The largest violation of a half-space, in voxels, that counts as none while a minimum is looked for.
+/// The largest violation of a half-space, in voxels, that counts as none while a minimum is looked
+/// for.
 ///
 /// The rounding of a 3 x 3 solve with a condition of 1 / CUTOFF is about 1e-12.
 const TOLERANCE: f64 = 1e-9;
@@ -31,7 +32,8 @@ pub struct HalfSpace {
 }
 
 impl HalfSpace {
-    /// Returns the depth of `w` in the half-space, in multiples of the normal's length; negative outside.
+    /// Returns the depth of `w` in the half-space, in multiples of the normal's length; negative
+    /// outside.
     #[inline]
     pub fn depth(&self, w: DVec3) -> f64 {
         self.normal.dot(w) - self.offset
@@ -68,8 +70,8 @@ impl Qef {
         self.points / self.count
     }
 
-    /// Returns the least point of the function, nearest to the mean of the added points where it is not
-    /// unique. At least one plane must have been added.
+    /// Returns the least point of the function, nearest to the mean of the added points where it is
+    /// not unique. At least one plane must have been added.
     pub fn minimiser(&self) -> Minimiser {
         self.minimiser_near(self.mean())
     }
@@ -108,18 +110,19 @@ pub struct Minimiser {
 }
 
 impl Minimiser {
-    /// Returns the spread of the planes' directions: the second eigenvalue as a part of the largest, 0 to 1.
+    /// Returns the spread of the planes' directions: the second eigenvalue as a part of the
+    /// largest, 0 to 1.
     #[inline]
     pub fn spread(&self) -> f64 {
         self.weights[1]
     }
 
-    /// Returns the least point within the intersection of `region`, up to a rounding error; `None` when
-    /// none is found, as when the intersection is empty.
+    /// Returns the least point within the intersection of `region`, up to a rounding error; `None`
+    /// when none is found, as when the intersection is empty.
     ///
     /// The minimum of a convex quadratic function lies on the boundaries of at most three of the
-    /// half-spaces, with multipliers that are not negative (Karush, Kuhn, Tucker): all such sets are
-    /// tried, smaller ones first.
+    /// half-spaces, with multipliers that are not negative (Karush, Kuhn, Tucker): all such sets
+    /// are tried, smaller ones first.
     pub fn within(&self, region: &[HalfSpace]) -> Option<DVec3> {
         let feasible = |w: DVec3| region.iter().all(|half| half.depth(w) >= -TOLERANCE);
         if feasible(self.point) {
@@ -156,8 +159,8 @@ impl Minimiser {
         None
     }
 
-    /// Returns the least point on the boundaries of one to three half-spaces, if the function pushes
-    /// outwards through all of them there.
+    /// Returns the least point on the boundaries of one to three half-spaces, if the function
+    /// pushes outwards through all of them there.
     fn on_boundary(&self, set: &[HalfSpace]) -> Option<DVec3> {
         let k = set.len();
         let mut pulled = [DVec3::ZERO; 3];

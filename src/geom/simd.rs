@@ -1,11 +1,13 @@
 //! Vectors of floats, as wide as the machine has them, with the operators of numbers.
 //!
 //! [`dispatch`] runs a kernel with the widest instructions that the machine has of those that the
-//! program was built for, picked at run time. Every lane takes the same operations in the same
-//! order as a number would, none fused, so the results do not depend on the machine; but for f32
-//! and the operations that say so, which are for bounds only: what is within their rounding is
-//! decided in f64. Kernels must not use closures, which would not be compiled for those
-//! instructions.
+//! program was built for, picked at run time.
+//!
+//! Every lane takes the same operations in the same order as a number would, none fused, so f64
+//! results do not depend on the machine. Operations of f32 that say so may be fused. They serve
+//! bounds only: what is within their rounding is decided in f64.
+//!
+//! Kernels must not use closures, which would not be compiled for those instructions.
 
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
@@ -60,32 +62,32 @@ pub(crate) mod scalar {
     }
 }
 
-macro_rules! lanes {
-    ($lanes:ident, $mask:ident, $float:ident, $vector:ident, $bits:ident,
+macro_rules! numbers {
+    ($numbers:ident, $mask:ident, $float:ident, $vector:ident, $bits:ident,
      $splat:ident, $add:ident, $sub:ident, $mul:ident, $div:ident, $min:ident, $max:ident, $sqrt:ident,
      $less:ident, $at_most:ident, $select:ident, $and:ident, $or:ident, $first:ident, $count:ident, $load:ident, $store:ident) => {
         #[doc = concat!("Several `", stringify!($float), "`.")]
         #[derive(Clone, Copy, Debug)]
-        pub struct $lanes<S: Simd>(S, S::$vector);
+        pub struct $numbers<S: Simd>(S, S::$vector);
 
-        /// For each lane whether something holds.
+        /// A mask: a truth value for each lane.
         #[derive(Clone, Copy, Debug)]
         pub struct $mask<S: Simd>(S, S::$bits);
 
-        impl<S: Simd> $lanes<S> {
+        impl<S: Simd> $numbers<S> {
             /// The number of lanes.
             pub const COUNT: usize = S::$count;
 
             /// Returns the same number in all lanes.
             #[inline(always)]
             pub fn splat(simd: S, x: $float) -> Self {
-                $lanes(simd, simd.$splat(x))
+                $numbers(simd, simd.$splat(x))
             }
 
             /// Returns the vectors that eight numbers fill, one after the other.
             #[inline(always)]
             pub fn load(simd: S, from: &[$float; 8], vector: usize) -> Self {
-                $lanes(simd, S::$load(from).0[vector])
+                $numbers(simd, S::$load(from).0[vector])
             }
 
             /// Puts a vector back among eight numbers.
@@ -94,31 +96,31 @@ macro_rules! lanes {
                 S::$store(to).0[vector] = self.1;
             }
 
-            /// Returns the smaller ones.
+            /// Returns the smaller number of each lane.
             #[inline(always)]
             pub fn min(self, other: Self) -> Self {
-                $lanes(self.0, self.0.$min(self.1, other.1))
+                $numbers(self.0, self.0.$min(self.1, other.1))
             }
 
-            /// Returns the larger ones.
+            /// Returns the larger number of each lane.
             #[inline(always)]
             pub fn max(self, other: Self) -> Self {
-                $lanes(self.0, self.0.$max(self.1, other.1))
+                $numbers(self.0, self.0.$max(self.1, other.1))
             }
 
-            /// Square roots.
+            /// Returns the square roots.
             #[inline(always)]
             pub fn sqrt(self) -> Self {
-                $lanes(self.0, self.0.$sqrt(self.1))
+                $numbers(self.0, self.0.$sqrt(self.1))
             }
 
-            /// Which are less than those of `other`.
+            /// Returns a mask of the lanes that are less than those of `other`.
             #[inline(always)]
             pub fn less(self, other: Self) -> $mask<S> {
                 $mask(self.0, self.0.$less(self.1, other.1))
             }
 
-            /// Which are at most those of `other`.
+            /// Returns a mask of the lanes that are at most those of `other`.
             #[inline(always)]
             pub fn at_most(self, other: Self) -> $mask<S> {
                 $mask(self.0, self.0.$at_most(self.1, other.1))
@@ -126,13 +128,13 @@ macro_rules! lanes {
         }
 
         impl<S: Simd> $mask<S> {
-            /// `yes` where it holds, `no` elsewhere.
+            /// Returns `yes` where the mask holds, `no` elsewhere.
             #[inline(always)]
-            pub fn select(self, yes: $lanes<S>, no: $lanes<S>) -> $lanes<S> {
-                $lanes(self.0, self.0.$select(self.1, yes.1, no.1))
+            pub fn select(self, yes: $numbers<S>, no: $numbers<S>) -> $numbers<S> {
+                $numbers(self.0, self.0.$select(self.1, yes.1, no.1))
             }
 
-            /// Whether it holds in any lane.
+            /// Whether the mask holds in any lane.
             #[inline(always)]
             pub fn any(self) -> bool {
                 self.0.$first(self.1) < S::$count
@@ -155,41 +157,41 @@ macro_rules! lanes {
             }
         }
 
-        impl<S: Simd> Add for $lanes<S> {
+        impl<S: Simd> Add for $numbers<S> {
             type Output = Self;
             #[inline(always)]
             fn add(self, other: Self) -> Self {
-                $lanes(self.0, self.0.$add(self.1, other.1))
+                $numbers(self.0, self.0.$add(self.1, other.1))
             }
         }
 
-        impl<S: Simd> Sub for $lanes<S> {
+        impl<S: Simd> Sub for $numbers<S> {
             type Output = Self;
             #[inline(always)]
             fn sub(self, other: Self) -> Self {
-                $lanes(self.0, self.0.$sub(self.1, other.1))
+                $numbers(self.0, self.0.$sub(self.1, other.1))
             }
         }
 
-        impl<S: Simd> Mul for $lanes<S> {
+        impl<S: Simd> Mul for $numbers<S> {
             type Output = Self;
             #[inline(always)]
             fn mul(self, other: Self) -> Self {
-                $lanes(self.0, self.0.$mul(self.1, other.1))
+                $numbers(self.0, self.0.$mul(self.1, other.1))
             }
         }
 
-        impl<S: Simd> Div for $lanes<S> {
+        impl<S: Simd> Div for $numbers<S> {
             type Output = Self;
             #[inline(always)]
             fn div(self, other: Self) -> Self {
-                $lanes(self.0, self.0.$div(self.1, other.1))
+                $numbers(self.0, self.0.$div(self.1, other.1))
             }
         }
     };
 }
 
-lanes!(
+numbers!(
     F32s,
     Mask32s,
     f32,
@@ -213,7 +215,7 @@ lanes!(
     as_simd_f32s,
     as_mut_simd_f32s
 );
-lanes!(
+numbers!(
     F64s,
     Mask64s,
     f64,
@@ -240,16 +242,16 @@ lanes!(
 
 /// Three vectors as coordinates.
 macro_rules! points {
-    ($points:ident, $lanes:ident, $float:ident) => {
+    ($points:ident, $numbers:ident, $float:ident) => {
         #[doc = concat!("Points with coordinates of several `", stringify!($float), "`.")]
         #[derive(Clone, Copy, Debug)]
         pub struct $points<S: Simd> {
             /// First coordinates.
-            pub x: $lanes<S>,
+            pub x: $numbers<S>,
             /// Second coordinates.
-            pub y: $lanes<S>,
+            pub y: $numbers<S>,
             /// Third coordinates.
-            pub z: $lanes<S>,
+            pub z: $numbers<S>,
         }
 
         impl<S: Simd> $points<S> {
@@ -257,19 +259,19 @@ macro_rules! points {
             #[inline(always)]
             pub fn splat(simd: S, p: [$float; 3]) -> Self {
                 $points {
-                    x: $lanes::splat(simd, p[0]),
-                    y: $lanes::splat(simd, p[1]),
-                    z: $lanes::splat(simd, p[2]),
+                    x: $numbers::splat(simd, p[0]),
+                    y: $numbers::splat(simd, p[1]),
+                    z: $numbers::splat(simd, p[2]),
                 }
             }
 
-            /// One of the vectors that eight points fill.
+            /// Returns one of the vectors that eight points fill.
             #[inline(always)]
             pub fn load(simd: S, from: &[[$float; 8]; 3], vector: usize) -> Self {
                 $points {
-                    x: $lanes::load(simd, &from[0], vector),
-                    y: $lanes::load(simd, &from[1], vector),
-                    z: $lanes::load(simd, &from[2], vector),
+                    x: $numbers::load(simd, &from[0], vector),
+                    y: $numbers::load(simd, &from[1], vector),
+                    z: $numbers::load(simd, &from[2], vector),
                 }
             }
 
@@ -283,7 +285,7 @@ macro_rules! points {
 
             /// Returns the scalar products.
             #[inline(always)]
-            pub fn dot(self, other: Self) -> $lanes<S> {
+            pub fn dot(self, other: Self) -> $numbers<S> {
                 self.x * other.x + self.y * other.y + self.z * other.z
             }
 
@@ -299,7 +301,7 @@ macro_rules! points {
 
             /// Returns the vectors times numbers.
             #[inline(always)]
-            pub fn times(self, factors: $lanes<S>) -> Self {
+            pub fn times(self, factors: $numbers<S>) -> Self {
                 $points { x: self.x * factors, y: self.y * factors, z: self.z * factors }
             }
         }
@@ -326,8 +328,8 @@ points!(Vec3F32s, F32s, f32);
 points!(Vec3F64s, F64s, f64);
 
 impl<S: Simd> F32s<S> {
-    /// One of the vectors that eight words fill: of each word byte number `n`, from the lowest on,
-    /// as a number.
+    /// Returns one of the vectors that eight words fill: byte number `n` of each word, from the
+    /// lowest on, as a number.
     #[inline(always)]
     pub fn bytes(simd: S, words: &[u32; 8], vector: usize, n: u32) -> Self {
         let words = S::as_simd_u32s(words).0[vector];
@@ -338,7 +340,7 @@ impl<S: Simd> F32s<S> {
         F32s(simd, simd.transmute_f32s_u32s(lifted)) - F32s::splat(simd, 8_388_608.0)
     }
 
-    /// Their sizes.
+    /// Returns the absolute values.
     #[inline(always)]
     pub fn abs(self) -> Self {
         F32s(self.0, self.0.abs_f32s(self.1))
@@ -376,7 +378,8 @@ impl<S: Simd> Vec3F32s<S> {
 }
 
 impl<S: Simd> Mask32s<S> {
-    /// Of the vectors that eight numbers fill, a bit for each lane in which it holds.
+    /// Returns a bit for each lane in which the mask holds, at the lane's place among eight
+    /// numbers.
     #[inline(always)]
     pub fn bits(self, vector: usize) -> u8 {
         const BITS: [f32; 8] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0];
@@ -384,7 +387,7 @@ impl<S: Simd> Mask32s<S> {
         self.0.reduce_sum_f32s(bits.1) as u8
     }
 
-    /// Of two sets of points those that the mask says.
+    /// Returns the points of `yes` where the mask holds, those of `no` elsewhere.
     #[inline(always)]
     pub fn select_points(self, yes: Vec3F32s<S>, no: Vec3F32s<S>) -> Vec3F32s<S> {
         Vec3F32s { x: self.select(yes.x, no.x), y: self.select(yes.y, no.y), z: self.select(yes.z, no.z) }
@@ -392,7 +395,7 @@ impl<S: Simd> Mask32s<S> {
 }
 
 impl<S: Simd> Mask64s<S> {
-    /// Of two sets of points those that the mask says.
+    /// Returns the points of `yes` where the mask holds, those of `no` elsewhere.
     #[inline(always)]
     pub fn select_points(self, yes: Vec3F64s<S>, no: Vec3F64s<S>) -> Vec3F64s<S> {
         Vec3F64s { x: self.select(yes.x, no.x), y: self.select(yes.y, no.y), z: self.select(yes.z, no.z) }
@@ -403,7 +406,8 @@ impl<S: Simd> Mask64s<S> {
 mod tests {
     use super::*;
 
-    /// What is less than `limit`, a bit each; the bytes of `words`; the least of `numbers`.
+    /// Kernel: a bit for each number less than `limit`, the bytes of `words`, the least of
+    /// `numbers`.
     struct Kernel<'a> {
         numbers: &'a [f32; 8],
         limit: f32,

@@ -47,17 +47,17 @@ impl Swept {
         }
     }
 
-    /// Distance from `p` to the inner rectangle (segment, point).
+    /// Returns the distance from `p` to the inner rectangle (segment, point).
     pub fn core_distance(&self, p: DVec3) -> f64 {
         self.core_distance_squared(p, self.u.cross(self.v)).sqrt()
     }
 
-    /// No point of the volume is nearer to `p` than this.
+    /// Returns a distance that no point of the volume is nearer to `p` than.
     pub fn lower_bound(&self, p: DVec3) -> f64 {
         (self.core_distance(p) - self.radius).max(0.0)
     }
 
-    /// No point of the volume is farther from `p` than this.
+    /// Returns a distance that no point of the volume is farther from `p` than.
     pub fn upper_bound(&self, p: DVec3) -> f64 {
         self.corners().into_iter().map(|c| (p - c).length()).fold(0.0, f64::max) + self.radius
     }

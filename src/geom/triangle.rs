@@ -30,11 +30,11 @@ impl TriangleSide {
 /// The part of a triangle that a closest point lies on (\[LW11\] Definition 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Feature {
-    /// In the interior.
+    /// The interior of the triangle.
     Face,
-    /// In the interior of an edge.
+    /// The interior of an edge.
     Edge(TriangleSide),
-    /// At a corner.
+    /// A corner.
     Vertex(TriangleSide),
 }
 
@@ -68,17 +68,17 @@ pub struct SplatTriangle<S: Simd> {
 #[derive(Clone, Copy, Debug)]
 struct SplatEdge<S: Simd> {
     corner: Vec3F64s<S>,
-    /// In the triangle's plane, perpendicular to the edge.
+    /// Vector in the triangle's plane, perpendicular to the edge.
     outward: Vec3F64s<S>,
     /// The end with the lower vertex number.
     start: Vec3F64s<S>,
-    /// The other one.
+    /// The end with the higher vertex number.
     end: Vec3F64s<S>,
 }
 
 impl<S: Simd> SplatTriangle<S> {
-    /// Squared distances from the points in `p`, each the same value, bit for bit, as
-    /// [`Triangle::distance_squared`] gives.
+    /// Returns the squared distances from the points in `p`, each bit for bit the value that
+    /// [`Triangle::distance_squared`] returns.
     #[inline(always)]
     pub fn distances_squared(&self, simd: S, p: Vec3F64s<S>) -> F64s<S> {
         let zero = F64s::splat(simd, 0.0);
@@ -108,13 +108,13 @@ impl<S: Simd> SplatEdge<S> {
         SplatEdge { corner: a, outward: (b - a).cross(normal), start, end }
     }
 
-    /// See [`Triangle::outside`].
+    /// Returns the numbers that [`Triangle::outside`] returns for one edge.
     #[inline(always)]
     fn outside(&self, p: Vec3F64s<S>) -> F64s<S> {
         (p - self.corner).dot(self.outward)
     }
 
-    /// As `segment` computes them for one point.
+    /// Returns the squared distances from the edge, by the arithmetic of `Triangle::segment`.
     #[inline(always)]
     fn distances_squared(&self, simd: S, p: Vec3F64s<S>) -> F64s<S> {
         let edge = self.end - self.start;
@@ -136,7 +136,7 @@ pub struct ClosestPoint {
     pub point: DVec3,
     /// Squared distance from the query point.
     pub distance_squared: f64,
-    /// Where on the triangle.
+    /// Feature that the closest point lies on.
     pub feature: Feature,
 }
 
@@ -154,7 +154,7 @@ impl Triangle {
         Triangle { corners, normal, flipped }
     }
 
-    /// Squared distance from `p`. The same value, bit for bit, as [`closest`](Self::closest) gives.
+    /// Returns the squared distance from `p`, bit for bit the value of [`closest`](Self::closest).
     #[inline(always)]
     pub fn distance_squared(&self, p: DVec3) -> f64 {
         let outside = self.outside(p);
@@ -173,7 +173,8 @@ impl Triangle {
         best
     }
 
-    /// Returns the triangle with what does not depend on the point computed ahead.
+    /// Returns the triangle for the distances of many points, with all that depends on no point
+    /// computed ahead.
     #[inline(always)]
     pub fn splat<S: Simd>(&self, simd: S) -> SplatTriangle<S> {
         let a = Vec3F64s::splat(simd, self.corners[0].to_array());
@@ -246,8 +247,9 @@ impl Triangle {
         }
     }
 
-    /// Parameters (u, v) of `point` on the triangle, t(u, v) = b + u e0 + v e1 with b the first
-    /// corner, e0 and e1 the edges from it to the second and third: u, v >= 0, u + v <= 1.
+    /// Returns the parameters (u, v) of `point` on the triangle: t(u, v) = b + u e0 + v e1, with b
+    /// the first corner, and e0 and e1 the edges from it to the second and third; u, v >= 0, u + v
+    /// <= 1.
     pub fn parameters(&self, point: DVec3) -> [f64; 2] {
         let twice_area = self.outside(point).map(|x| (-x).max(0.0));
         let sum = twice_area[0] + twice_area[1] + twice_area[2];
@@ -269,13 +271,13 @@ impl Triangle {
         [weights[1], weights[2]]
     }
 
-    /// Edge vector k, from corner k to the next.
+    /// Returns the vector of an edge, from the corner of the same number to the next.
     pub fn edge(&self, side: TriangleSide) -> DVec3 {
         self.corners[side.next().index()] - self.corners[side.index()]
     }
 
-    /// Per edge how far `p` is beyond the plane through the edge perpendicular to the triangle,
-    /// positive outside, times the edge's length.
+    /// Returns, for each edge, the distance of `p` from the plane through the edge perpendicular to
+    /// the triangle, positive outside, times the edge's length.
     #[inline(always)]
     pub fn outside(&self, p: DVec3) -> [f64; 3] {
         let [a, b, c] = self.corners;
@@ -286,8 +288,8 @@ impl Triangle {
         ]
     }
 
-    /// Closest point on an edge: point, squared distance, feature. Evaluated from the end with the
-    /// lower vertex number, so that the triangles of an edge agree.
+    /// Returns the closest point on an edge, its squared distance and its feature. The edge is
+    /// evaluated from the end with the lower vertex number, so that the triangles of an edge agree.
     #[inline(always)]
     fn segment(&self, side: TriangleSide, p: DVec3) -> (DVec3, f64, Feature) {
         let (first, second) = self.ends(side);

@@ -1,5 +1,6 @@
-//! Makes a mesh as files have it into one that has a topology: equal positions become one vertex,
-//! and triangles that bound nothing go.
+//! Cleaning: makes a mesh as files have it into one with a topology.
+//!
+//! Equal positions become one vertex, and triangles that bound nothing go.
 
 use std::fmt;
 
@@ -10,18 +11,19 @@ use super::TriMesh;
 use super::degenerate::{degenerate, has_lines, take_out};
 use super::equal::{first_equal, hash};
 
-/// What [`clean`] or [`weld`] did.
+/// Counts of the changes that [`clean`] or [`weld`] made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CleanReport {
-    /// Vertices that were merged into an earlier one at the same position.
+    /// Number of vertices that were merged into an earlier vertex at the same position.
     pub welded_vertices: usize,
-    /// Triangles without area that were dropped.
+    /// Number of triangles without area that were dropped.
     pub degenerate_triangles: usize,
-    /// Triangles that were dropped because an earlier one has the same corners and orientation.
+    /// Number of triangles that were dropped because an earlier one has the same corners and
+    /// orientation.
     pub duplicate_triangles: usize,
-    /// Vertices that were dropped because no triangle has them (any more).
+    /// Number of vertices that were dropped because no triangle has them (any more).
     pub unreferenced_vertices: usize,
-    /// Triangles that were split at a vertex on their edge, because a triangle without area that
+    /// Number of triangles that were split at a vertex on their edge: a triangle without area that
     /// was dropped had that vertex and that edge.
     pub split_triangles: usize,
 }
@@ -249,7 +251,7 @@ mod tests {
         assert!(clean(mesh(&upright, &[[0, 1, 2]])).1.is_clean());
     }
 
-    /// What [`clean`] says it does, word by word, where no triangle is to be split.
+    /// Cleans as the doc comment of [`clean`] says, word by word, where no triangle is to be split.
     fn slow_clean(mesh: &TriMesh) -> TriMesh {
         let position = |v: u32| mesh.vertices[v as usize];
         let first = |v: u32| (0..).find(|&u| position(u) == position(v)).unwrap();
@@ -273,7 +275,7 @@ mod tests {
         }
     }
 
-    /// Enough of it for several chunks and shards: a sheet of squares, each triangle with vertices
+    /// Cleans a soup of several chunks and shards: a sheet of squares, each triangle with vertices
     /// of its own, and some triangles twice.
     #[test]
     fn a_large_soup_becomes_a_sheet_on_any_number_of_threads() {

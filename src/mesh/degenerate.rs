@@ -1,4 +1,4 @@
-//! Taking out triangles without area so that a closed surface stays closed.
+//! Removal of triangles without area, so that a closed surface stays closed.
 //!
 //! ```text
 //!        r                    r
@@ -31,7 +31,8 @@ pub(super) fn degenerate(triangles: &[[u32; 3]], vertices: &[[f64; 3]]) -> Vec<u
         .collect()
 }
 
-/// Whether there is one among them whose neighbours would miss it.
+/// Whether the neighbours of one of the degenerate triangles would miss it: its corners lie on a
+/// line.
 pub(super) fn has_lines(degenerate: &[u32], triangles: &[[u32; 3]], vertices: &[[f64; 3]]) -> bool {
     degenerate.iter().any(|&t| longest_edge(triangles[t as usize], vertices).is_some())
 }
@@ -109,7 +110,7 @@ struct Fragments<'a> {
     all: Vec<Fragment>,
     /// The fragments that run along an edge in its direction; some may be gone.
     by_edge: HashMap<[u32; 2], Vec<u32>>,
-    /// Those without area, the longest first, then in the order of their numbers.
+    /// Fragments without area, the longest first, then in the order of their numbers.
     waiting: BinaryHeap<(Length, Reverse<u32>)>,
     /// The triangles that were split.
     split: HashSet<u32>,
@@ -177,8 +178,8 @@ impl<'a> Fragments<'a> {
 
     /// Takes out all fragments without area.
     fn straighten(&mut self) {
-        /// Steps for each fragment without area in the beginning. Chains of them take one or two each;
-        /// only what was made to, or is too small for the test on the line, takes more.
+        /// Steps for each fragment without area in the beginning. Chains of them take one or two
+        /// each; only what was made to, or is too small for the test on the line, takes more.
         const STEPS: usize = 32;
         let mut steps = STEPS * self.waiting.len();
         while let Some((_, Reverse(number))) = self.waiting.pop() {

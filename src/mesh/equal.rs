@@ -1,10 +1,10 @@
-//! Which items of a long list are equal.
+//! Equal items of a long list.
 
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
 use rayon::prelude::*;
 
-/// For each item the first one with the same key.
+/// Returns, for each item, the first item with the same key.
 ///
 /// The items are dealt out by hash to shards whose tables stay in the cache of a core, and the
 /// shards are worked off in parallel. Within a shard the items keep their order, so the result does
@@ -14,14 +14,14 @@ pub(super) fn first_equal<T: Copy + Sync, K: Copy + Default + Eq + Send + Sync>(
     key: impl Fn(T) -> K + Sync,
     hash: impl Fn(&K) -> u64 + Sync,
 ) -> Vec<u32> {
-    /// Items in a shard: a table of this many keys takes about 300 kB, which the second cache level
-    /// holds.
+    /// Number of items in a shard. A table of this many keys takes about 300 kB, which the second
+    /// cache level holds.
     const SHARD: usize = 1 << 13;
-    /// More shards than this and dealing out, which writes to all of them in turn, becomes slow.
-    const MOST_SHARDS: usize = 256;
-    /// Items that are dealt out in one go.
+    /// The most shards. With more, dealing out becomes slow, since it writes to all shards in turn.
+    const MAX_SHARDS: usize = 256;
+    /// Number of items that are dealt out in one go.
     const CHUNK: usize = 1 << 16;
-    let shards = (items.len() / SHARD).next_power_of_two().min(MOST_SHARDS);
+    let shards = (items.len() / SHARD).next_power_of_two().min(MAX_SHARDS);
     // The table uses the low bits and the highest seven.
     let shard_of = |key: &K| (hash(key) >> 40) as usize & (shards - 1);
 

@@ -1,5 +1,4 @@
-//! Topology of a mesh: which triangles meet at each edge and vertex, and whether the mesh is
-//! closed.
+//! Topology of a mesh: the triangles at each edge and vertex, and its defects.
 //!
 //! Half-edge 3 t + k is edge k of triangle t, from its corner k to its corner k + 1.
 
@@ -11,7 +10,7 @@ use rayon::prelude::*;
 /// Rings of triangles around edges and vertices.
 #[derive(Clone, Debug, Default)]
 pub struct Topology {
-    /// Per half-edge the next half-edge of the same undirected edge, cyclically; itself on a
+    /// Next half-edge of the same undirected edge for each half-edge, cyclically; itself on a
     /// border.
     next_around_edge: Vec<u32>,
     /// Triangles around vertex v: `vertex_triangles[vertex_start[v]..vertex_start[v + 1]]`,
@@ -21,7 +20,7 @@ pub struct Topology {
     defects: Defects,
 }
 
-/// What keeps a mesh from being the boundary of a solid.
+/// The defects that keep a mesh from being the boundary of a solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Defects {
     /// Edges with one triangle.
@@ -61,7 +60,7 @@ impl Topology {
         Topology { next_around_edge, vertex_start, vertex_triangles, defects }
     }
 
-    /// What keeps the mesh from being closed.
+    /// Returns the defects that keep the mesh from being closed.
     pub fn defects(&self) -> &Defects {
         &self.defects
     }

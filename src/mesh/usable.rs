@@ -1,14 +1,15 @@
-//! Whether a mesh can be worked with at all.
+//! Checks of a mesh: vertex numbers and coordinates that can be worked with.
 
 use super::TriMesh;
 use std::ops::RangeInclusive;
 
-/// The lengths that can be worked with, in model units. Bounds of distances are squared in 32 bits,
-/// which hold numbers from 1e-38 to 3e38: within this range results do not depend on the unit of
-/// length, beyond it bounds are lost.
+/// The lengths that can be worked with, in model units.
+///
+/// Bounds of distances are squared in 32 bits, which hold numbers from 1e-38 to 3e38. Within this
+/// range results do not depend on the unit of length; beyond it bounds are lost.
 pub const LENGTHS: RangeInclusive<f64> = 1e-18..=1e18;
 
-/// Why a mesh cannot be worked with.
+/// A reason why a mesh cannot be worked with.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
@@ -19,7 +20,7 @@ pub enum MeshError {
         triangle: usize,
         /// The number of the vertex.
         vertex: u32,
-        /// How many vertices there are.
+        /// The number of vertices.
         vertices: usize,
     },
     /// A coordinate is infinite or not a number.

@@ -265,7 +265,7 @@ fn closed(around: &[u32]) -> Vec<u32> {
     around.iter().chain(&around[..1]).copied().collect()
 }
 
-/// Returns the same loop in the other direction.
+/// Returns a loop in the other direction.
 pub(super) fn reversed(around: &[u32]) -> Vec<u32> {
     around.iter().rev().copied().collect()
 }

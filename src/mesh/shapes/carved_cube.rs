@@ -72,12 +72,12 @@ pub fn carved_cube(detail: u32) -> TriMesh {
     b.finish()
 }
 
-/// Where three or more patches meet.
+/// The points where three or more patches meet.
 struct Corners {
     cube: Vec<u32>,
-    /// Where the corner bite ends on the cube's edges along x, y, z.
+    /// The ends of the corner bite on the cube's edges along x, y, z.
     bite: [u32; 3],
-    /// Where the groove ends on the faces y = -1 and x = -1, at z = -1 and z = 1.
+    /// The ends of the groove on the faces y = -1 and x = -1, at z = -1 and z = 1.
     groove_x: [u32; 2],
     groove_y: [u32; 2],
 }

@@ -47,7 +47,7 @@ pub const DEFAULT_DETAIL: u32 = 16;
 pub struct Shape {
     /// The name used on the command line.
     pub name: &'static str,
-    /// What it is, in one line.
+    /// Description in one line.
     pub about: &'static str,
     /// Makes the mesh with about this many triangle sides per unit of length; less than 2 counts
     /// as 2.

@@ -48,7 +48,7 @@ pub fn near_spheres(detail: u32) -> TriMesh {
     b.finish()
 }
 
-/// Where a sphere's triangles face.
+/// The side that a sphere's triangles face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     /// Away from the centre: a ball.
