@@ -7,7 +7,7 @@
 //! counts.
 
 use super::exit::{Exit, Failure, of_io};
-use exocarp::io::keep_permissions;
+use exocarp::io::{directory_of, keep_permissions, resolved};
 use exocarp::run::CancelToken;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -38,7 +38,7 @@ impl Staging {
     pub fn stage(&self, target: &Path) -> Result<PathBuf, Failure> {
         let target = resolved(target);
         let cannot = |e| cannot_write(&target, &e, of_io(&e));
-        let directory = staging_directory(&parent(&target)).map_err(cannot)?;
+        let directory = staging_directory(directory_of(&target)).map_err(cannot)?;
         let path = directory.path().join(target.file_name().unwrap_or_default());
         let mut state = self.lock();
         state.directories.push(directory);
@@ -100,17 +100,19 @@ pub(super) fn check<'a>(targets: impl IntoIterator<Item = &'a Path>) -> Result<(
         if target.exists() && !target.is_file() {
             return Err(Failure::usage(format!("{shown} is not a regular file; name another output")));
         }
-        let directory = parent(&target);
+        let directory = directory_of(&target);
         if !directory.is_dir() {
             let missing = directory.display();
             return Err(Failure::usage(format!("{shown}: there is no directory {missing}; create it first")));
         }
-        try_file(&directory, &target).map_err(|e| {
+        try_file(directory, &target).map_err(|e| {
             let exit = if of_io(&e) == Exit::Limit { Exit::Limit } else { Exit::Usage };
             cannot_write(path, &e, exit)
         })?;
-        let whole =
-            directory.canonicalize().unwrap_or(directory).join(target.file_name().unwrap_or_default());
+        let whole = directory
+            .canonicalize()
+            .unwrap_or_else(|_| directory.into())
+            .join(target.file_name().unwrap_or_default());
         if seen.contains(&whole) {
             return Err(Failure::usage(format!(
                 "two outputs are to be written to {shown}; name different files"
@@ -152,18 +154,6 @@ fn cannot_write(path: &Path, error: &std::io::Error, exit: Exit) -> Failure {
         exit,
         format!("{shown} cannot be written ({error}); check the permissions and the free space"),
     )
-}
-
-/// The file behind a symbolic link, so that the link stays one.
-fn resolved(path: &Path) -> PathBuf {
-    if path.is_symlink() { path.canonicalize().unwrap_or_else(|_| path.into()) } else { path.into() }
-}
-
-fn parent(path: &Path) -> PathBuf {
-    match path.parent() {
-        Some(parent) if parent != Path::new("") => parent.into(),
-        _ => PathBuf::from("."),
-    }
 }
 
 #[cfg(test)]

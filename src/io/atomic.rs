@@ -5,9 +5,11 @@
 //! permissions of the one that it replaces, or else those of any new file (the umask decides). A symbolic
 //! link keeps pointing to its file, and that file is replaced. Not promised: that the content is on the disk
 //! after a loss of power.
+//!
+//! The program replaces several files together, and takes from here what it needs for that.
 
 use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Error, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
@@ -20,34 +22,52 @@ pub(crate) fn write_atomically(
     write: impl FnOnce(&mut BufWriter<&mut File>) -> std::io::Result<()>,
 ) -> Result<(), SaveError> {
     let at = |kind| SaveError { path: path.to_path_buf(), kind };
-    let target = target(path);
-    let mut temporary = create_beside(&target).map_err(|e| at(SaveErrorKind::Create(e)))?;
-    let mut writer = BufWriter::with_capacity(1 << 16, temporary.as_file_mut());
+    let mut replacement = Replacement::create(path).map_err(|e| at(SaveErrorKind::Create(e)))?;
+    let mut writer = BufWriter::with_capacity(1 << 16, replacement.temporary.as_file_mut());
     write(&mut writer).and_then(|()| writer.flush()).map_err(|e| at(SaveErrorKind::Write(e)))?;
     drop(writer);
-    keep_permissions(temporary.path(), &target).map_err(|e| at(SaveErrorKind::Replace(e)))?;
-    temporary.persist(&target).map_err(|e| at(SaveErrorKind::Replace(e.error)))?;
-    Ok(())
+    replacement.commit().map_err(|e| at(SaveErrorKind::Replace(e)))
 }
 
-/// Writes the file `path` through `write`, which gets the path of the temporary file: it has the same
-/// extension, exists, is empty, and may be overwritten or created anew.
-#[allow(dead_code, reason = "the writer of .vdb files, which works by path, is its user")]
-pub(crate) fn write_path_atomically<E: From<SaveError>>(
-    path: &Path,
-    write: impl FnOnce(&Path) -> Result<(), E>,
-) -> Result<(), E> {
-    let at = |kind| SaveError { path: path.to_path_buf(), kind };
-    let target = target(path);
-    let temporary = create_beside(&target).map_err(|e| at(SaveErrorKind::Create(e)))?.into_temp_path();
-    write(&temporary)?;
-    keep_permissions(&temporary, &target).map_err(|e| at(SaveErrorKind::Replace(e)))?;
-    temporary.persist(&target).map_err(|e| at(SaveErrorKind::Replace(e.error)))?;
-    Ok(())
+/// A temporary file that replaces another one when it is complete, and is removed when dropped before.
+pub(crate) struct Replacement {
+    target: PathBuf,
+    temporary: NamedTempFile,
+}
+
+impl Replacement {
+    /// Creates an empty file beside `path`, with the same extension.
+    ///
+    /// # Errors
+    /// When no file can be created there, or `path` is something else than a file: a directory, a pipe or a
+    /// device, which a file must not take the place of.
+    pub fn create(path: &Path) -> std::io::Result<Self> {
+        let target = resolved(path);
+        if target.exists() && !target.is_file() {
+            let kind = if target.is_dir() { ErrorKind::IsADirectory } else { ErrorKind::InvalidInput };
+            return Err(Error::new(kind, "it is not a regular file"));
+        }
+        let temporary = create_beside(&target)?;
+        Ok(Replacement { target, temporary })
+    }
+
+    /// The temporary file, which may be overwritten or created anew.
+    pub fn path(&self) -> &Path {
+        self.temporary.path()
+    }
+
+    /// Puts the complete file in place.
+    ///
+    /// # Errors
+    /// When it cannot be renamed; an existing target is left as it was.
+    pub fn commit(self) -> std::io::Result<()> {
+        keep_permissions(self.temporary.path(), &self.target)?;
+        self.temporary.persist(&self.target).map(drop).map_err(|e| e.error)
+    }
 }
 
 /// Gives `new` the permissions of `old`, the file that it is to replace, if there is one: who may read and
-/// write it, not as whom it would run. For the program, too, which replaces several files together.
+/// write it, not as whom it would run.
 pub fn keep_permissions(new: &Path, old: &Path) -> std::io::Result<()> {
     #[cfg(unix)]
     if let Ok(old) = std::fs::metadata(old) {
@@ -61,20 +81,21 @@ pub fn keep_permissions(new: &Path, old: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// The file that `path` stands for: the one behind it if it is a symbolic link.
-fn target(path: &Path) -> PathBuf {
+/// Returns the file behind `path` if that is a symbolic link, so that the link stays one, and else `path`.
+pub fn resolved(path: &Path) -> PathBuf {
     match path.is_symlink() {
         true => path.canonicalize().unwrap_or_else(|_| path.to_path_buf()),
         false => path.to_path_buf(),
     }
 }
 
+/// Returns the directory that holds `target`.
+pub fn directory_of(target: &Path) -> &Path {
+    target.parent().filter(|parent| *parent != Path::new("")).unwrap_or(Path::new("."))
+}
+
 /// Creates a temporary file in the directory of `target`, with the same extension.
 fn create_beside(target: &Path) -> std::io::Result<NamedTempFile> {
-    let directory = match target.parent() {
-        Some(parent) if parent != Path::new("") => parent,
-        _ => Path::new("."),
-    };
     let suffix = target.extension().map(|e| format!(".{}", e.to_string_lossy())).unwrap_or_default();
     let mut builder = tempfile::Builder::new();
     builder.prefix(".exocarp-").suffix(&suffix);
@@ -84,7 +105,7 @@ fn create_beside(target: &Path) -> std::io::Result<NamedTempFile> {
         // What `File::create` asks for; the system takes the umask off.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(directory)
+    builder.tempfile_in(directory_of(target))
 }
 
 #[cfg(test)]
@@ -114,11 +135,9 @@ mod tests {
         assert!(error.to_string().ends_with(
             "a.ply: writing failed (disk full); check the free space, the output was left as it was"
         ));
-        let failed: Result<(), SaveError> = write_path_atomically(&path, |temporary| {
-            fs::write(temporary, "half").unwrap();
-            Err(error)
-        });
-        assert!(failed.is_err());
+        let replacement = Replacement::create(&path).unwrap();
+        fs::write(replacement.path(), "half").unwrap();
+        drop(replacement);
         let panicked = std::panic::catch_unwind(|| write_atomically(&path, |_| panic!("on purpose")));
         assert!(panicked.is_err());
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
@@ -130,13 +149,11 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.vdb");
         write_atomically(&path, |w| w.write_all(b"first")).unwrap();
-        write_path_atomically::<SaveError>(&path, |temporary| {
-            assert_eq!(temporary.extension().unwrap(), "vdb");
-            assert_eq!(fs::read_to_string(&path).unwrap(), "first");
-            fs::write(temporary, "second").unwrap();
-            Ok(())
-        })
-        .unwrap();
+        let replacement = Replacement::create(&path).unwrap();
+        assert_eq!(replacement.path().extension().unwrap(), "vdb");
+        assert_eq!(fs::read_to_string(&path).unwrap(), "first");
+        fs::write(replacement.path(), "second").unwrap();
+        replacement.commit().unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "second");
         assert_eq!(names(directory.path()), ["a.vdb"]);
     }
@@ -146,6 +163,18 @@ mod tests {
         let path = Path::new("/nonexistent/a.ply");
         let error = write_atomically(path, |_| Ok(())).unwrap_err().to_string();
         assert!(error.starts_with("/nonexistent/a.ply: no file can be created there ("), "{error}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn devices_and_directories_are_not_replaced() {
+        let directory = tempfile::tempdir().unwrap();
+        for path in [Path::new("/dev/null"), directory.path()] {
+            let error = Replacement::create(path).err().unwrap().to_string();
+            assert_eq!(error, "it is not a regular file", "{}", path.display());
+        }
+        assert!(!Path::new("/dev/null").is_file());
+        assert_eq!(names(directory.path()), [""; 0]);
     }
 
     #[cfg(unix)]
@@ -164,7 +193,7 @@ mod tests {
             fs::set_permissions(&path, fs::Permissions::from_mode(mode)).unwrap();
             write_atomically(&path, |_| Ok(())).unwrap();
             assert_eq!(permissions(&path).mode() & 0o777, mode);
-            write_path_atomically::<SaveError>(&path, |_| Ok(())).unwrap();
+            Replacement::create(&path).unwrap().commit().unwrap();
             assert_eq!(permissions(&path).mode() & 0o777, mode);
         }
 

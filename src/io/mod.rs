@@ -49,7 +49,7 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 #[doc(hidden)]
-pub use atomic::keep_permissions;
+pub use atomic::{directory_of, keep_permissions, resolved};
 pub use error::{LoadError, LoadErrorKind, Location, SaveError, SaveErrorKind, UnknownFormat};
 pub use loaded::{Loaded, Note, Passed};
 pub use mesh_tiles::{merge_tiles, save_tile};

@@ -4,6 +4,7 @@
 //! go to files without a name beside the target, and are put together at the end. STL takes triangles as they come, and
 //! gets their number at the end.
 
+use super::atomic::directory_of;
 use super::error::{SaveError, SaveErrorKind};
 use super::{Format, ply, stl};
 use std::fs::File;
@@ -45,7 +46,7 @@ impl MeshStream {
         let format = Format::of(path).map_err(|e| at(SaveErrorKind::Extension(e)))?;
         let create = || -> io::Result<Option<Body>> {
             let buffered = |file| BufWriter::with_capacity(BUFFER, file);
-            let directory = path.parent().filter(|p| *p != Path::new("")).unwrap_or(Path::new("."));
+            let directory = directory_of(path);
             Ok(match format {
                 Format::Ply => {
                     let part = || tempfile::tempfile_in(directory);

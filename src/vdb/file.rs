@@ -8,6 +8,7 @@ use super::VdbError;
 use super::bridge::ffi;
 use super::content_id;
 use super::grid::{Band, CLOSEST, CREATOR, ClosestGrid, SurfaceGrid};
+use crate::io::atomic::Replacement;
 use cxx::UniquePtr;
 use std::fs::File;
 use std::io::Read;
@@ -68,12 +69,11 @@ pub struct VdbOptions {
     pub metadata: Vec<(String, MetaValue)>,
 }
 
-/// Writes a level set to exactly `path`: one grid, which every OpenVDB program reads. With the closest
+/// Writes a level set to the file `path`, whatever its extension: one grid, which every OpenVDB program reads. With the closest
 /// triangles there are two, and programs that know no grids of integers refuse the file (some builds of
 /// OpenVDB's Python module) or the second grid.
 ///
-/// An existing file is overwritten in place, and a failure leaves a part of the new one: callers write
-/// to a temporary name and rename.
+/// An existing file is replaced when the new one is complete, and left as it was when something fails.
 ///
 /// # Errors
 /// If the file cannot be written whole, or the voxel size is below 1.5e-5 model units or beyond what half
@@ -93,7 +93,7 @@ pub fn write(
     write_grids(path, grid, closest, options.compression, &metadata(surface, options))
 }
 
-/// Writes grids as they are.
+/// Writes grids as they are into a file that appears whole or not at all.
 pub(super) fn write_grids(
     path: &Path,
     surface: &UniquePtr<ffi::FloatGrid>,
@@ -108,8 +108,13 @@ pub(super) fn write_grids(
         Compression::Zip => ffi::Codec::Zip,
         Compression::None => ffi::Codec::None,
     };
-    ffi::write_file(bytes(path), surface, closest, codec, metadata).map_err(|e| VdbError::write(path, e))?;
-    content_id::stamp(path).map_err(|e| VdbError::write_by_system(path, e))
+    let by_system = |e| VdbError::write_by_system(path, e);
+    let replacement = Replacement::create(path).map_err(by_system)?;
+    let temporary = replacement.path();
+    ffi::write_file(bytes(temporary), surface, closest, codec, metadata)
+        .map_err(|e| VdbError::write(path, e))?;
+    content_id::stamp(temporary).map_err(by_system)?;
+    replacement.commit().map_err(by_system)
 }
 
 /// Opens the level set `name` of a file; without a name the grid `surface`, or else the only float grid.

@@ -61,8 +61,8 @@ impl TileFile {
     }
 }
 
-/// Joins all tiles of a work to the band that it gives undivided, byte for byte, in the file `output`, which is written
-/// in place. Tiles may come in any order. Returns the joined band.
+/// Joins all tiles of a work to the band that it gives undivided, byte for byte, in the file `output`, which
+/// is replaced whole. Tiles may come in any order. Returns the joined band.
 ///
 /// # Errors
 /// When a file is no tile, is of another work, is there twice or not at all, or when reading or writing fails.

@@ -233,9 +233,41 @@ fn what_cannot_be_written_is_an_error() {
     let error = write(&path, &band.surface, None, &options()).unwrap_err().to_string();
     assert_eq!(error, format!("cannot write {}: No such file or directory", path.display()));
     assert!(write(dir.path(), &band.surface, None, &options()).is_err());
-    let full = Path::new("/dev/full");
-    if full.exists() {
-        let error = write(full, &band.surface, None, &options()).unwrap_err().to_string();
-        assert_eq!(error, "cannot write /dev/full: No space left on device");
+    let device = Path::new("/dev/null");
+    if device.exists() {
+        let error = write(device, &band.surface, None, &options()).unwrap_err().to_string();
+        assert_eq!(error, "cannot write /dev/null: it is not a regular file");
     }
+}
+
+/// Name of the variable that makes the next test write, in a process that may not write much.
+const OUTPUT: &str = "EXOCARP_TEST_OUTPUT";
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_failed_write_leaves_the_old_file_and_nothing_else() {
+    if let Some(path) = std::env::var_os(OUTPUT) {
+        let error = write(Path::new(&path), &SPHERE.band().surface, None, &options()).unwrap_err();
+        assert!(error.to_string().ends_with("File too large"), "{error}");
+        return;
+    }
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("sphere.vdb");
+    write_sphere(&path, &options());
+    let old = std::fs::read(&path).unwrap();
+    // Files of at most 8 KiB, or 16 where the shell counts in KiB; the signal would end the process.
+    let limited = "trap '' XFSZ; ulimit -f 16; exec \"$0\" \"$@\"";
+    let test = "files::a_failed_write_leaves_the_old_file_and_nothing_else";
+    let run = std::process::Command::new("sh")
+        .args(["-c", limited])
+        .arg(std::env::current_exe().unwrap())
+        .args(["--exact", test])
+        .env(OUTPUT, &path)
+        .output()
+        .unwrap();
+    let printed = String::from_utf8_lossy(&run.stdout);
+    assert!(run.status.success() && printed.contains("1 passed"), "{printed}");
+    assert!(old.len() > 16 << 10);
+    assert_eq!(std::fs::read(&path).unwrap(), old);
+    assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 1);
 }
