@@ -4,6 +4,7 @@ pub mod error;
 pub mod geom;
 pub mod run;
 pub mod quantity;
+pub mod system;
 
 pub mod lattice;
 pub mod mesh;

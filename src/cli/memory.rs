@@ -1,11 +1,4 @@
-//! Memory: what the system says of it, and that it gets back what is free. Linux tells in `/proc`; elsewhere nothing is known.
-
-use std::fs::read_to_string;
-
-/// The most memory that this process has had resident so far, in bytes; 0 where the system does not tell.
-pub(super) fn peak_rss() -> u64 {
-    read_to_string("/proc/self/status").ok().and_then(|text| kilobytes(&text, "VmHWM:")).unwrap_or(0)
-}
+//! What this process asks of the system: that it takes back memory that is free, and that it does not end a write.
 
 /// Has large blocks of memory returned to the system as soon as they are free, for the run that this process is for.
 ///
@@ -29,28 +22,5 @@ pub(super) fn let_large_writes_fail() {
     {
         // SAFETY: it takes two numbers, and no handler is installed that could run at a bad time.
         let _ = unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
-    }
-}
-
-/// The value of a line like `VmHWM:   1234 kB`, in bytes.
-fn kilobytes(text: &str, key: &str) -> Option<u64> {
-    let line = text.lines().find_map(|line| line.strip_prefix(key))?;
-    line.split_whitespace().next()?.parse::<u64>().ok().map(|kb| kb * 1024)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lines_of_proc_are_read() {
-        assert_eq!(kilobytes("VmPeak:\t 10 kB\nVmHWM:\t  2048 kB\n", "VmHWM:"), Some(2 << 20));
-        assert_eq!(kilobytes("", "VmHWM:"), None);
-    }
-
-    #[test]
-    #[cfg(target_os = "linux")]
-    fn this_process_has_some_memory() {
-        assert!(peak_rss() > 1 << 20);
     }
 }

@@ -7,7 +7,6 @@ use super::files::{
     save_vdb, vdb_options,
 };
 use super::format::{counted, grouped, short};
-use super::memory::peak_rss;
 use super::outputs;
 use super::session::{Session, Verbosity};
 use super::statistics::{MeshFacts, Phases, RunFile};
@@ -16,6 +15,7 @@ use exocarp::mesh::{CleanReport, Topology};
 use exocarp::offset::{BandOptions, EngineTimes, OffsetError, OffsetSettings, OffsetStatistics};
 use exocarp::quantity::VoxelSize;
 use exocarp::run::{Bytes, Phase};
+use exocarp::system::peak_memory;
 use exocarp::vdb::VdbOptions;
 use serde::Serialize;
 
@@ -229,5 +229,5 @@ fn summary(result: &Made, phases: &Phases<EngineTimes>) -> String {
     text += &count("  with several sheets", s.contour.several_sheets);
     text += &count("  clamped vertices", s.contour.clamped);
     text += &count("active voxels", s.vdb.active_voxels);
-    text + &format!("  band {}, peak {}", Bytes(s.vdb.memory), Bytes(peak_rss()))
+    text + &format!("  band {}, peak {}", Bytes(s.vdb.memory), Bytes(peak_memory().unwrap_or(0)))
 }

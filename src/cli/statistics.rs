@@ -2,9 +2,9 @@
 //!
 //! Its field names are a contract with those who read it. The engine's parts come as it serialises them.
 
-use super::memory::peak_rss;
 use super::session::Session;
 use exocarp::mesh::{Topology, TriMesh};
+use exocarp::system::peak_memory;
 use serde::Serialize;
 
 /// Everything about one run: `S` are its settings, `T` the engine's times.
@@ -45,7 +45,7 @@ impl<'a, S, T> RunFile<'a, S, T> {
             settings,
             phases,
             wall: session.wall(),
-            peak_rss: peak_rss(),
+            peak_rss: peak_memory().unwrap_or(0),
             engine: parts,
         }
     }

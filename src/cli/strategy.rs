@@ -8,9 +8,10 @@ use exocarp::io::{Format, MeshStream, SaveError, Tile, save_tile};
 use exocarp::mesh::{MeshChunk, TriMesh};
 use exocarp::offset::{
     BandResult, MeshSink, OffsetError, OffsetResult, OffsetSettings, OffsetStatistics, Partition, SinkError,
-    StreamResult, available_memory, job, offset, offset_band, offset_streamed,
+    StreamResult, job, offset, offset_band, offset_streamed,
 };
 use exocarp::quantity::TileIndex;
+use exocarp::system::available_memory;
 use exocarp::vdb::Band;
 use std::path::{Path, PathBuf};
 use std::time::Instant;

@@ -87,13 +87,6 @@ pub fn median(mut values: Vec<f64>) -> Option<f64> {
     }
 }
 
-/// The most memory that this process has had resident so far, in bytes, where the system tells.
-pub fn peak_memory() -> Option<u64> {
-    let text = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    line.split_whitespace().next()?.parse::<u64>().ok().map(|kib| kib * 1024)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -17,7 +17,6 @@
 //! MeshLib's. What a process held before the method began is measured, too.
 
 mod error;
-mod machine;
 mod measurement;
 mod method;
 mod process;
@@ -26,8 +25,7 @@ mod table;
 mod worker;
 
 pub use error::CompareError;
-pub use machine::machine;
-pub use measurement::{Measurement, PhaseTime, median, peak_memory};
+pub use measurement::{Measurement, PhaseTime, median};
 pub use method::{Method, Needs};
 pub use process::{Lost, Programs, WORKER, measure, probe_meshlib, worker_arguments};
 pub use table::{Column, Row, rows, text};
@@ -39,6 +37,7 @@ use crate::offset::{InputError, OffsetSettings};
 use crate::quantity::Precision;
 use crate::quantity::{Length, VoxelSize};
 use crate::run::RunSettings;
+use crate::system::machine;
 use crate::verify::{VerifyReport, VerifySettings, verify};
 use serde::Serialize;
 use std::time::Duration;

@@ -1,12 +1,13 @@
 //! One method, once: what runs in a process of its own.
 
-use super::measurement::{Measurement, PhaseTime, peak_memory};
+use super::measurement::{Measurement, PhaseTime};
 use super::{CompareError, Method, Needs};
 use crate::lattice::Lattice;
 use crate::mesh::TriMesh;
 use crate::offset::{OffsetSettings, offset};
 use crate::quantity::{Length, VoxelSize};
 use crate::run::RunSettings;
+use crate::system::peak_memory;
 use crate::vdb::{BandWidths, Scheme, VdbLevelSet};
 use std::path::PathBuf;
 use std::time::Instant;

@@ -9,6 +9,7 @@ use crate::geom::aabb::Aabb;
 use crate::lattice::Lattice;
 use crate::mesh::{TriMesh, measure};
 use crate::run::{Bytes, Cancelled, RunSettings};
+use crate::system::available_memory;
 use glam::DVec3;
 
 /// The work would not fit into memory.
@@ -175,11 +176,4 @@ fn offset_area(mesh: &TriMesh, r: f64) -> f64 {
     let radius = 0.5 * Aabb::around(mesh.vertices.iter().map(|&v| DVec3::from(v))).diagonal() + r;
     let grown = area + 2.0 * (4.0 * PI * area).sqrt() * r + 4.0 * PI * r * r;
     if r == 0.0 { area } else { grown.min(area.max(4.0 * PI * radius * radius)) }
-}
-
-/// Memory that the system can give without swapping, in bytes, where it says so.
-pub fn available_memory() -> Option<u64> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find(|line| line.starts_with("MemAvailable:"))?;
-    line.split_whitespace().nth(1)?.parse::<u64>().ok().map(|kib| kib * 1024)
 }

@@ -27,7 +27,7 @@ mod voxel_refinement;
 
 pub use error::{EmptyResult, InputError, OffsetError};
 pub use job::job;
-pub use memory::{MemoryError, available_memory};
+pub use memory::MemoryError;
 pub use pipeline::{offset, offset_band};
 pub use result::{BandResult, OffsetResult, StreamResult};
 pub use settings::{BandOptions, OffsetSettings, OpenInput, SettingsError};

@@ -3,7 +3,8 @@
 use super::patch::boundary::Boundary;
 use super::settings::ModelUnits;
 use crate::mesh::{TriMesh, measure};
-use crate::offset::{MemoryError, available_memory};
+use crate::offset::MemoryError;
+use crate::system::available_memory;
 use glam::DVec3;
 use std::f64::consts::PI;
 
