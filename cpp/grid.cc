@@ -1,12 +1,10 @@
 #include "exocarp/cpp/grid.h"
 #include "exocarp/src/vdb/bridge.rs.h"
 
-#include <openvdb/tools/ChangeBackground.h>
-#include <openvdb/tools/Count.h>
+#include <openvdb/openvdb.h>
 #include <openvdb/tools/Prune.h>
+#include <tbb/task_arena.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <stdexcept>
 
@@ -30,12 +28,19 @@ openvdb::Coord coord(rust::Slice<const std::int32_t> ijk, std::size_t n)
     return openvdb::Coord(ijk[3 * n], ijk[3 * n + 1], ijk[3 * n + 2]);
 }
 
-template <class Grid>
-void describe(Grid& grid, const std::string& name, double voxel, rust::Str creator)
+// A new grid, made by the library. `Grid::create` would compile the whole class once more, which takes the
+// compiler twice as long as all else that is here.
+template <class T>
+std::shared_ptr<Held<T>> create(T background, const std::string& name, double voxel, rust::Str creator)
 {
-    grid.setName(name);
-    grid.setCreator(std::string(creator));
-    grid.setTransform(openvdb::math::Transform::createLinearTransform(voxel));
+    using Grid = typename Held<T>::Grid;
+    initialize();
+    const auto grid = openvdb::gridPtrCast<Grid>(openvdb::GridBase::createGrid(Grid::gridType()));
+    grid->tree().root().setBackground(background, /*updateChildNodes=*/false);
+    grid->setName(name);
+    grid->setCreator(std::string(creator));
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel));
+    return std::make_shared<Held<T>>(grid);
 }
 
 } // namespace
@@ -61,19 +66,14 @@ Placement placement_of(const openvdb::GridBase& grid)
 
 std::unique_ptr<FloatGrid> new_float_grid(double voxel, float background, rust::Str creator)
 {
-    initialize();
-    auto grid = openvdb::FloatGrid::create(background);
-    describe(*grid, "surface", voxel, creator);
-    grid->setGridClass(openvdb::GRID_LEVEL_SET);
-    return std::make_unique<FloatGrid>(std::make_shared<Held<float>>(grid));
+    auto held = create<float>(background, "surface", voxel, creator);
+    held->grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    return std::make_unique<FloatGrid>(std::move(held));
 }
 
 std::unique_ptr<Int32Grid> new_int32_grid(double voxel, rust::Str name, rust::Str creator)
 {
-    initialize();
-    auto grid = openvdb::Int32Grid::create(-1);
-    describe(*grid, std::string(name), voxel, creator);
-    return std::make_unique<Int32Grid>(std::make_shared<Held<std::int32_t>>(grid));
+    return std::make_unique<Int32Grid>(create<std::int32_t>(-1, std::string(name), voxel, creator));
 }
 
 template <class T>
@@ -122,7 +122,7 @@ void LeafGrid<T>::take(const LeafGrid& other)
         tile.getBoundingBox(cube);
         tree.sparseFill(cube, *tile, /*active=*/false);
     }
-    for (auto leaf = from.cbeginLeaf(); leaf; ++leaf) tree.addLeaf(new Leaf(*leaf));
+    for (const Leaf* leaf : other.mHeld->leaves()) tree.addLeaf(new Leaf(*leaf));
 }
 
 template <class T>
@@ -134,10 +134,14 @@ std::size_t LeafGrid<T>::leaf_count() const
 template <class T>
 Counts LeafGrid<T>::counts() const
 {
-    const auto& tree = mHeld->grid->constTree();
+    const openvdb::TreeBase& tree = mHeld->grid->constBaseTree();
     Counts counts{};
-    counts.active_voxels = openvdb::tools::countActiveVoxels(tree, THREADED);
-    counts.memory = openvdb::tools::memUsage(tree, THREADED);
+    // Counted with threads of TBB's own otherwise.
+    tbb::task_arena arena(1);
+    arena.execute([&] {
+        counts.active_voxels = tree.activeVoxelCount();
+        counts.memory = tree.memUsage();
+    });
     return counts;
 }
 
@@ -215,21 +219,6 @@ bool FloatGrid::is_fog() const
 Placement FloatGrid::placement() const
 {
     return placement_of(*mHeld->grid);
-}
-
-std::unique_ptr<FloatGrid> FloatGrid::half_copy(float background) const
-{
-    // The smallest half float; anything smaller would become 0 and lose its sign.
-    constexpr float SMALLEST = 5.9604645e-8f;
-    auto copy = mHeld->grid->deepCopy();
-    openvdb::tools::changeLevelSetBackground(copy->tree(), background, THREADED);
-    for (auto leaf = copy->tree().beginLeaf(); leaf; ++leaf) {
-        for (auto value = leaf->beginValueOn(); value; ++value) {
-            value.setValue(std::copysign(std::max(std::abs(*value), SMALLEST), *value));
-        }
-    }
-    copy->setSaveFloatAsHalf(true);
-    return std::make_unique<FloatGrid>(std::make_shared<Held<float>>(copy));
 }
 
 } // namespace exocarp::vdb

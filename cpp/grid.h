@@ -3,7 +3,8 @@
 
 #include "exocarp/cpp/vdb.h"
 
-#include <openvdb/openvdb.h>
+#include <openvdb/Grid.h>
+#include <openvdb/tree/Tree.h>
 
 #include <mutex>
 #include <string>

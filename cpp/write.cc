@@ -2,9 +2,12 @@
 #include "exocarp/src/vdb/bridge.rs.h"
 
 #include <openvdb/io/Archive.h>
+#include <openvdb/tools/ChangeBackground.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <fstream>
 #include <stdexcept>
 #include <system_error>
@@ -58,30 +61,42 @@ std::uint32_t flags(Codec codec)
     }
 }
 
+// The class of a grid: unknown, until the grid is copied.
+//
 // The archive takes zip off the compression of every grid that says it is a level set or a fog volume, though
 // readers take each grid's compression from the file. It asks the grid itself, and then writes the metadata
-// of a copy: so only the copy says what this is.
-class Zipped : public openvdb::FloatGrid {
+// of a copy: so only the copy says what this is. (A class derived from FloatGrid could do that as well, but it
+// takes four times as long to compile.)
+class ClassOfCopies : public openvdb::StringMetadata {
 public:
-    explicit Zipped(const openvdb::FloatGrid& grid)
-        : openvdb::FloatGrid(openvdb::ConstPtrCast<TreeType>(grid.constTreePtr()))
+    // The first `copies` generations of copies are still unknown.
+    ClassOfCopies(std::string name, int copies)
+        : openvdb::StringMetadata(openvdb::GridBase::gridClassToString(openvdb::GRID_UNKNOWN))
+        , mName(std::move(name))
+        , mCopies(copies)
     {
-        insertMeta(grid);
-        setTransform(grid.constTransform().copy());
-        mClass = getGridClass();
-        clearGridClass();
     }
 
-    openvdb::GridBase::ConstPtr copyGrid() const override
+    openvdb::Metadata::Ptr copy() const override
     {
-        const auto copy = openvdb::ConstPtrCast<GridBase>(openvdb::FloatGrid::copyGrid());
-        copy->setGridClass(mClass);
-        return copy;
+        if (mCopies > 0) return std::make_shared<ClassOfCopies>(mName, mCopies - 1);
+        return std::make_shared<openvdb::StringMetadata>(mName);
     }
 
 private:
-    openvdb::GridClass mClass;
+    std::string mName;
+    int mCopies;
 };
+
+// The same grid, which the archive compresses with zip.
+openvdb::GridBase::ConstPtr zipped(const openvdb::GridBase& grid)
+{
+    const auto copy = openvdb::ConstPtrCast<openvdb::GridBase>(grid.copyGrid());
+    const std::string name = openvdb::GridBase::gridClassToString(grid.getGridClass());
+    // What a grid is given it copies once.
+    copy->insertMeta(openvdb::GridBase::META_GRID_CLASS, ClassOfCopies(name, 1));
+    return copy;
+}
 
 openvdb::MetaMap meta_map(const rust::Vec<MetaItem>& items)
 {
@@ -99,6 +114,23 @@ openvdb::MetaMap meta_map(const rust::Vec<MetaItem>& items)
 
 } // namespace
 
+std::unique_ptr<FloatGrid> FloatGrid::half_copy(float background) const
+{
+    // The smallest half float; anything smaller would become 0 and lose its sign.
+    constexpr float SMALLEST = 5.9604645e-8f;
+    const auto copy = openvdb::gridPtrCast<openvdb::FloatGrid>(mHeld->grid->deepCopyGrid());
+    openvdb::tools::changeLevelSetBackground(copy->tree(), background, THREADED);
+    std::vector<Held<float>::Leaf*> leaves;
+    copy->tree().getNodes(leaves);
+    for (auto* leaf : leaves) {
+        for (auto value = leaf->beginValueOn(); value; ++value) {
+            value.setValue(std::copysign(std::max(std::abs(*value), SMALLEST), *value));
+        }
+    }
+    copy->setSaveFloatAsHalf(true);
+    return std::make_unique<FloatGrid>(std::make_shared<Held<float>>(copy));
+}
+
 void write_file(
     rust::Slice<const std::uint8_t> path,
     const FloatGrid& surface,
@@ -108,7 +140,7 @@ void write_file(
 {
     initialize();
     openvdb::GridCPtrVec grids{surface.held().grid};
-    if (codec == Codec::Zip) grids[0] = std::make_shared<Zipped>(*surface.held().grid);
+    if (codec == Codec::Zip) grids[0] = zipped(*surface.held().grid);
     if (closest) grids.push_back(closest->held().grid);
     const openvdb::MetaMap map = meta_map(metadata);
     Writer writer;

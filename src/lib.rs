@@ -21,7 +21,9 @@ pub mod contour;
 pub mod offset;
 pub mod verify;
 pub mod thicken;
+#[cfg(feature = "cli")]
 pub mod compare;
+#[cfg(feature = "cli")]
 pub mod paper;
 
 pub use contour::ContourStatistics;

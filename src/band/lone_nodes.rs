@@ -20,7 +20,6 @@ use crate::lattice::{Ijk, Lattice, LeafMask, Slab, Z_FIRST, Z_LAST, bits};
 use crate::run::SHARE;
 use glam::DVec3;
 use rayon::prelude::*;
-use serde::Serialize;
 use std::ops::AddAssign;
 use std::sync::LazyLock;
 
@@ -53,7 +52,8 @@ const MAX_TRIED: usize = 8;
 const WAY_PARTS: i32 = 8;
 
 /// Counts of lone nodes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct LoneNodes {
     /// Number of lone nodes that changed sides.
     pub joined: u64,

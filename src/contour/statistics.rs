@@ -1,10 +1,10 @@
 //! What happened during contouring.
 
-use serde::Serialize;
 use std::ops::AddAssign;
 
 /// Counts of one contouring: the part `contour` of the statistics file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ContourStatistics {
     /// Cells with corners of both signs.
     pub cells: u64,

@@ -1,13 +1,13 @@
 //! Counts of edges by the way their intersection was found (\[LW11\] Table V).
 
-use serde::Serialize;
 use std::ops::AddAssign;
 
 /// Subdivisions after which an analytic solution still counts as one, as in Table V.
 pub const COUNTED_SUBDIVISIONS: usize = 6;
 
 /// Edges by the way their intersection was found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct EdgeStatistics {
     /// Intersected grid edges.
     pub intersected: u64,

@@ -1,10 +1,10 @@
 //! Counts of the filters' work (\[LW11\] Table IV).
 
-use serde::Serialize;
 use std::ops::AddAssign;
 
 /// Distance computations by filter.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FilterStatistics {
     /// Nodes of the grid that encloses model and offset surface.
     pub nodes_total: u64,

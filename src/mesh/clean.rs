@@ -5,14 +5,14 @@
 use std::fmt;
 
 use rayon::prelude::*;
-use serde::Serialize;
 
 use super::TriMesh;
 use super::degenerate::{degenerate, has_lines, take_out};
 use super::equal::{first_equal, hash};
 
 /// Counts of the changes that [`clean`] or [`weld`] made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CleanReport {
     /// Number of vertices that were merged into an earlier vertex at the same position.
     pub welded_vertices: usize,

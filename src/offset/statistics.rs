@@ -7,10 +7,10 @@ use crate::edge::EdgeStatistics;
 use crate::filter::FilterStatistics;
 use crate::subvoxel::MissedFeatures;
 use crate::vdb::Band;
-use serde::Serialize;
 
 /// Counts and times of one offset.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct OffsetStatistics {
     /// The signed distance r in model units.
     pub distance: f64,
@@ -27,7 +27,7 @@ pub struct OffsetStatistics {
     /// Nodes without a neighbour on their side of the surface.
     pub lone_nodes: LoneNodes,
     /// Features of the offset solid that the lattice is too coarse for.
-    #[serde(rename = "unseen")]
+    #[cfg_attr(feature = "serde", serde(rename = "unseen"))]
     pub missed: MissedFeatures,
     /// Slabs that were worked off one after the other.
     pub slabs: usize,
@@ -62,7 +62,8 @@ impl OffsetStatistics {
 }
 
 /// Seconds per stage of the engine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct EngineTimes {
     /// Building the hierarchy.
     pub hierarchy: f64,
@@ -82,7 +83,8 @@ impl EngineTimes {
 }
 
 /// The size of the band.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct VdbStatistics {
     /// Active voxels of the grid `surface`.
     pub active_voxels: u64,

@@ -3,11 +3,11 @@
 use super::search::{Found, Missed, MissedCandidate, MissedCandidates};
 use crate::geom::union_find::UnionFind;
 use crate::lattice::Ijk;
-use serde::Serialize;
 
 /// The kind of a missed feature.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum MissedKind {
     /// A part of the offset solid that is thinner than a voxel.
     Sheet,
@@ -18,7 +18,8 @@ pub enum MissedKind {
 }
 
 /// A feature of the offset solid that the result lacks.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct MissedFeature {
     /// Sheet, gap or part.
     pub kind: MissedKind,
@@ -34,7 +35,8 @@ pub struct MissedFeature {
 }
 
 /// All features that the lattice is too coarse for.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct MissedFeatures {
     /// Number of sheets thinner than a voxel.
     pub sheets: usize,
@@ -43,7 +45,7 @@ pub struct MissedFeatures {
     /// Number of parts smaller than a cell.
     pub parts: usize,
     /// Features with the most points first, at most a hundred.
-    #[serde(rename = "places")]
+    #[cfg_attr(feature = "serde", serde(rename = "places"))]
     pub features: Vec<MissedFeature>,
 }
 

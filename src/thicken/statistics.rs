@@ -1,9 +1,8 @@
 //! Counts and times of a thickening.
 
-use serde::Serialize;
-
 /// Counts and times of one thickening.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ThickenStatistics {
     /// Thickness r, in model units.
     pub thickness: f64,
@@ -22,7 +21,8 @@ pub struct ThickenStatistics {
 }
 
 /// Counts of shape processing (\[WC13\] section 4.3).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ShapeCounts {
     /// Number of rounds until nothing moved, or the maximum.
     pub rounds: u32,
@@ -31,7 +31,8 @@ pub struct ShapeCounts {
 }
 
 /// Numbers of triangles of the result, by origin.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct TriangleCounts {
     /// Triangles of the patch that are in the result with the same coordinates.
     pub kept: u64,
@@ -42,7 +43,8 @@ pub struct TriangleCounts {
 }
 
 /// Seconds that each stage took.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ThickenTimes {
     /// Checks of the patch, and the hierarchy.
     pub hierarchy: f64,

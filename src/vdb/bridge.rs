@@ -76,6 +76,7 @@ pub(super) mod ffi {
     }
 
     /// The schemes of OpenVDB's level-set offset.
+    #[cfg(feature = "cli")]
     enum Scheme {
         /// First-order upwind differences, forward Euler.
         First,
@@ -138,8 +139,10 @@ pub(super) mod ffi {
         fn half_copy(self: &FloatGrid, background: f32) -> Result<UniquePtr<FloatGrid>>;
 
         /// Polygons in world space.
+        #[cfg(feature = "cli")]
         type Polygons;
         /// OpenVDB's `meshToVolume`: `points` in index space, the widths of the band in voxels.
+        #[cfg(feature = "cli")]
         fn mesh_band(
             voxel: f64,
             points: &[f32],
@@ -149,6 +152,7 @@ pub(super) mod ffi {
             threads: i32,
         ) -> Result<UniquePtr<FloatGrid>>;
         /// OpenVDB's `LevelSetFilter::offset`: a positive distance, in model units, erodes.
+        #[cfg(feature = "cli")]
         fn filter_offset(
             self: Pin<&mut FloatGrid>,
             distance: f32,
@@ -156,11 +160,16 @@ pub(super) mod ffi {
             threads: i32,
         ) -> Result<()>;
         /// OpenVDB's `volumeToMesh` without adaptivity.
+        #[cfg(feature = "cli")]
         fn contour(self: &FloatGrid, iso: f64, threads: i32) -> Result<UniquePtr<Polygons>>;
+        #[cfg(feature = "cli")]
         fn point_count(self: &Polygons) -> usize;
+        #[cfg(feature = "cli")]
         fn triangle_count(self: &Polygons) -> usize;
+        #[cfg(feature = "cli")]
         fn quad_count(self: &Polygons) -> usize;
         /// Copies everything out.
+        #[cfg(feature = "cli")]
         fn read(self: &Polygons, points: &mut [f32], triangles: &mut [u32], quads: &mut [u32]) -> Result<()>;
 
         /// Writes one or two grids (`closest` may be null).

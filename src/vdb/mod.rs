@@ -26,6 +26,7 @@ mod file;
 mod grid;
 mod info;
 mod leaves;
+#[cfg(feature = "cli")]
 mod openvdb_tools;
 mod content_id;
 mod tiles;
@@ -36,5 +37,6 @@ pub use file::{
 };
 pub use grid::{Band, ClosestGrid, SurfaceGrid};
 pub use info::{FileInfo, GridInfo, info};
+#[cfg(feature = "cli")]
 pub use openvdb_tools::{BandWidths, Polygons, Scheme, VdbLevelSet};
 pub use tiles::{merge_bands, write_tile};

@@ -3,15 +3,15 @@
 //! Lengths are in model units unless a name says otherwise. Vertex and triangle numbers are those
 //! of the file. All types can be serialised; the names of the fields are those of the JSON file.
 
-use serde::Serialize;
 
 /// Report of [`verify`](super::verify).
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct VerifyReport {
     /// The case that OUTPUT was judged by.
     pub judged: Judged,
     /// Topology and intersections of OUTPUT by itself.
-    #[serde(flatten)]
+    #[cfg_attr(feature = "serde", serde(flatten))]
     pub soundness: Soundness,
     /// Distance of OUTPUT from the true offset surface.
     pub distance: DistanceReport,
@@ -33,7 +33,8 @@ impl VerifyReport {
 }
 
 /// The case that OUTPUT was judged by.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Judged {
     /// Signed offset distance, in model units.
     pub distance: f64,
@@ -50,7 +51,8 @@ pub struct Judged {
 }
 
 /// A length in the three units in which offsets are compared.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ReportedLength {
     /// The length in model units.
     pub units: f64,
@@ -61,7 +63,8 @@ pub struct ReportedLength {
 }
 
 /// Statistics of a set of errors.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Statistics {
     /// Number of samples; with none, everything else is 0.
     pub samples: usize,
@@ -78,7 +81,8 @@ pub struct Statistics {
 }
 
 /// Topology and intersections.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Soundness {
     /// Defects of edges, vertices and triangles.
     pub topology: TopologyReport,
@@ -88,7 +92,8 @@ pub struct Soundness {
 
 /// Topology of a mesh whose vertices at exactly the same position were made one. Nothing else is
 /// repaired.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct TopologyReport {
     /// Vertices that a triangle uses, after welding.
     pub vertices: usize,
@@ -142,7 +147,8 @@ pub struct TopologyReport {
 
 /// Pairs of triangles that have more in common than the vertices and edges they share, without
 /// degenerate triangles.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct IntersectionReport {
     /// Number of intersecting pairs.
     pub pairs: u64,
@@ -153,7 +159,8 @@ pub struct IntersectionReport {
 }
 
 /// Two triangles that intersect.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct IntersectingPair {
     /// Numbers of the triangles, ascending.
     pub triangles: [u32; 2],
@@ -165,7 +172,8 @@ pub struct IntersectingPair {
 ///
 /// For a shell, points of the sheet at INPUT's own surface are judged against distance 0, and
 /// points of walls between the sheets are left out.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct DistanceReport {
     /// Error at points uniform over OUTPUT's area.
     pub surface: Statistics,
@@ -188,7 +196,8 @@ pub struct DistanceReport {
 ///
 /// Bin i counts errors from 10^(first + i / per_decade) to the next bin's, as a share of the
 /// diagonal. The first bin also counts smaller ones, the last also larger ones.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Histogram {
     /// Power of ten at which the first bin begins.
     pub first: i32,
@@ -199,7 +208,8 @@ pub struct Histogram {
 }
 
 /// Distances from points of the true offset surface to OUTPUT.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct MissingReport {
     /// Distance from the offsets of faces, uniform over INPUT's area.
     pub faces: Statistics,
@@ -220,7 +230,8 @@ pub struct MissingReport {
 
 /// Creases of the true offset surface: points with two closest points of INPUT. Creases are traced
 /// from INPUT's concave edges when growing and from its convex ones when shrinking.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CreaseReport {
     /// Number of edges of INPUT that creases were traced from: sharper than the crease angle.
     pub input_edges: usize,
@@ -243,7 +254,8 @@ pub struct CreaseReport {
 /// between them. A triangle belongs to the sheet at |D| when all its corners are farther from INPUT
 /// than |D| / 2, to the one at INPUT when none is, and to a wall otherwise. The thickness at a
 /// point of the sheet at |D| is the point's distance from the other sheet.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ShellReport {
     /// Thickness that was asked for, in model units.
     pub wanted: f64,
@@ -259,7 +271,8 @@ pub struct ShellReport {
 
 /// Thickness of a wall, over samples uniform over the area of the sheet at |D| and over its
 /// vertices.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Thickness {
     /// Number of samples.
     pub samples: usize,
@@ -276,8 +289,9 @@ pub struct Thickness {
 }
 
 /// A promise of an offset surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Promise {
     /// No border edges.
     Closed,
@@ -296,7 +310,8 @@ pub enum Promise {
 }
 
 /// A promise that OUTPUT breaks.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct BrokenPromise {
     /// The promise.
     pub promise: Promise,
