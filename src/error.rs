@@ -6,6 +6,7 @@ use crate::io::{LoadError, MergeError, SaveError};
 use crate::offset::OffsetError;
 use crate::run::{Cancelled, ThreadError};
 use crate::thicken::ThickenError;
+#[cfg(feature = "openvdb")]
 use crate::vdb::VdbError;
 use crate::verify::VerifyError;
 
@@ -35,6 +36,7 @@ pub enum Error {
     #[error(transparent)]
     Verify(VerifyError),
     /// A grid or a `.vdb` file could not be made, read or written.
+    #[cfg(feature = "openvdb")]
     #[error(transparent)]
     Vdb(VdbError),
     /// The worker threads could not be started.
@@ -78,6 +80,7 @@ impl From<ThickenError> for Error {
     }
 }
 
+#[cfg(feature = "openvdb")]
 impl From<VdbError> for Error {
     fn from(error: VdbError) -> Self {
         match error {

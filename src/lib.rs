@@ -14,6 +14,7 @@ pub mod distance;
 pub mod filter;
 pub mod candidates;
 pub mod band;
+#[cfg(feature = "openvdb")]
 pub mod vdb;
 pub mod edge;
 pub mod subvoxel;
@@ -28,7 +29,9 @@ pub mod paper;
 
 pub use contour::ContourStatistics;
 pub use error::Error;
-pub use offset::{BandOptions, OffsetSettings, job};
+#[cfg(feature = "openvdb")]
+pub use offset::BandOptions;
+pub use offset::{OffsetSettings, job};
 pub use quantity::{Length, ParseQuantityError, Precision, TileIndex, Tolerance, VoxelSize};
 pub use subvoxel::MissedFeatures;
 

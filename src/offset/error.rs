@@ -9,6 +9,7 @@ use crate::edge::TooManyEdges;
 use crate::mesh::{MeshError, Topology, TriMesh};
 use crate::quantity::Precision;
 use crate::run::{Cancelled, RunSettings};
+#[cfg(feature = "openvdb")]
 use crate::vdb::VdbError;
 
 /// Why an offset, its band or a part of it could not be made.
@@ -47,6 +48,7 @@ pub enum OffsetError {
         precision: Precision,
     },
     /// OpenVDB could not hold the band.
+    #[cfg(feature = "openvdb")]
     #[error(transparent)]
     Vdb(VdbError),
     /// The receiver of a streamed mesh failed.
@@ -75,6 +77,7 @@ impl From<ContourError> for OffsetError {
     }
 }
 
+#[cfg(feature = "openvdb")]
 impl From<VdbError> for OffsetError {
     fn from(error: VdbError) -> Self {
         match error {

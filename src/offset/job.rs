@@ -22,7 +22,8 @@ fn of_version(version: &str, mesh: &TriMesh, settings: &OffsetSettings) -> u64 {
         distance,
         voxel,
         open_input,
-        band: _,
+        #[cfg(feature = "openvdb")]
+            band: _,
         precision,
         tolerance,
         max_halvings,

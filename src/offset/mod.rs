@@ -18,6 +18,10 @@ mod result;
 mod settings;
 mod stages;
 mod statistics;
+#[cfg(feature = "openvdb")]
+mod stored_band;
+#[cfg(not(feature = "openvdb"))]
+#[path = "stored_band_absent.rs"]
 mod stored_band;
 mod stream;
 mod surface;
@@ -28,8 +32,14 @@ mod voxel_refinement;
 pub use error::{EmptyResult, InputError, OffsetError};
 pub use job::job;
 pub use memory::MemoryError;
-pub use pipeline::{offset, offset_band};
-pub use result::{BandResult, OffsetResult, StreamResult};
-pub use settings::{BandOptions, OffsetSettings, OpenInput, SettingsError};
+pub use pipeline::offset;
+#[cfg(feature = "openvdb")]
+pub use pipeline::offset_band;
+#[cfg(feature = "openvdb")]
+pub use result::BandResult;
+pub use result::{OffsetResult, StreamResult};
+#[cfg(feature = "openvdb")]
+pub use settings::BandOptions;
+pub use settings::{OffsetSettings, OpenInput, SettingsError};
 pub use statistics::{EngineTimes, OffsetStatistics, VdbStatistics};
 pub use stream::{MeshSink, Partition, SinkError, offset_streamed};

@@ -1,18 +1,21 @@
 //! The operations: check the input, build its hierarchy, run the stages.
 
 use super::stages::run_stages;
-use super::stored_band::StoredBand;
+use super::stored_band::{Band, StoredBand};
 use super::voxel_refinement::refine_until_resolved;
-use super::{BandOptions, BandResult, EmptyResult, EngineTimes, OffsetError, OffsetResult, OffsetSettings};
+#[cfg(feature = "openvdb")]
+use super::{BandOptions, BandResult};
+use super::{EmptyResult, EngineTimes, OffsetError, OffsetResult, OffsetSettings};
 use super::{OffsetStatistics, error, memory};
 use crate::band::BandSettings;
-use crate::band::narrow_band::{self, StoredPart};
+#[cfg(feature = "openvdb")]
+use crate::band::narrow_band;
+use crate::band::narrow_band::StoredPart;
 use crate::contour::SlabContour;
 use crate::distance::SignedDistance;
 use crate::mesh::{Topology, TriMesh};
 use crate::run::{Phase, RunSettings};
 use crate::subvoxel::MissedFeatures;
-use crate::vdb::Band;
 use std::time::Instant;
 
 /// Makes the offset surface of `mesh`: all points at the signed distance `settings.distance` from
@@ -44,7 +47,15 @@ pub fn offset(
         let ((mesh, band), statistics) = refine_until_resolved(prepared, fits, |band_settings, times| {
             on_lattice(prepared.distance, settings, band_settings, times, run)
         })?;
-        Ok(OffsetResult { mesh, precision: settings.precision, band, statistics })
+        #[cfg(not(feature = "openvdb"))]
+        let _ = band;
+        Ok(OffsetResult {
+            mesh,
+            precision: settings.precision,
+            #[cfg(feature = "openvdb")]
+            band,
+            statistics,
+        })
     })
 }
 
@@ -54,6 +65,7 @@ pub fn offset(
 ///
 /// # Errors
 /// As [`offset()`].
+#[cfg(feature = "openvdb")]
 pub fn offset_band(
     mesh: &TriMesh,
     settings: &OffsetSettings,
@@ -125,8 +137,7 @@ fn on_lattice(
     run: &RunSettings,
 ) -> Result<(MeshAndBand, OffsetStatistics), OffsetError> {
     let mut statistics = OffsetStatistics::new(band_settings, times);
-    let stored = |options: &BandOptions| StoredBand::new(band_settings, options);
-    let mut stored = settings.band.as_ref().map(stored).transpose()?;
+    let mut stored = StoredBand::wanted(band_settings, settings)?;
     let done = run_stages(distance, settings, band_settings, stored.as_mut(), &mut statistics, run)?;
     let Some((SlabContour { mesh, .. }, lost)) = done else {
         return Err(EmptyResult::explain(distance, band_settings, run)?.into());

@@ -4,6 +4,7 @@ use super::OffsetStatistics;
 use crate::io::{self, SaveError, SaveOptions};
 use crate::mesh::TriMesh;
 use crate::quantity::Precision;
+#[cfg(feature = "openvdb")]
 use crate::vdb::Band;
 use std::path::Path;
 
@@ -15,6 +16,7 @@ pub struct OffsetResult {
     /// The number type that the mesh's coordinates are made for.
     pub precision: Precision,
     /// The narrow band in OpenVDB grids, where the settings asked for it.
+    #[cfg(feature = "openvdb")]
     pub band: Option<Band>,
     /// Counts and times of the run.
     pub statistics: OffsetStatistics,
@@ -32,6 +34,7 @@ impl OffsetResult {
 }
 
 /// The narrow band of an offset surface, without a mesh.
+#[cfg(feature = "openvdb")]
 #[derive(Debug)]
 pub struct BandResult {
     /// The band in OpenVDB grids: phi, and the closest triangles where they were asked for.
@@ -45,6 +48,7 @@ pub struct BandResult {
 pub struct StreamResult {
     /// The narrow band in OpenVDB grids, where the settings asked for it. That of a tile is the
     /// tile's.
+    #[cfg(feature = "openvdb")]
     pub band: Option<Band>,
     /// Counts and times of the run. Those of a tile are the tile's.
     pub statistics: OffsetStatistics,

@@ -23,6 +23,7 @@ pub enum OpenInput {
 }
 
 /// The part of the narrow band that is kept in OpenVDB grids.
+#[cfg(feature = "openvdb")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BandOptions {
@@ -33,6 +34,7 @@ pub struct BandOptions {
     pub closest: bool,
 }
 
+#[cfg(feature = "openvdb")]
 impl Default for BandOptions {
     fn default() -> Self {
         BandOptions { half_width: 3.0, closest: false }
@@ -63,6 +65,7 @@ pub struct OffsetSettings {
     pub open_input: OpenInput,
     /// The part of the narrow band that is kept beside the mesh. Without it the band is as narrow
     /// as contouring needs, 1 voxel on either side, and is gone when the mesh is done.
+    #[cfg(feature = "openvdb")]
     pub band: Option<BandOptions>,
     /// Coordinates of the result.
     pub precision: Precision,
@@ -84,6 +87,7 @@ impl Default for OffsetSettings {
             distance: Length::DiagonalFraction(0.02),
             voxel: VoxelSize::Resolution(256),
             open_input: OpenInput::Refuse,
+            #[cfg(feature = "openvdb")]
             band: None,
             precision: Precision::F32,
             tolerance: None,
@@ -178,7 +182,12 @@ impl OffsetSettings {
 
     /// Returns the half-width of the band in voxels: contouring needs 1.
     pub(crate) fn half_width(&self) -> f64 {
-        self.band.map_or(1.0, |band| band.half_width)
+        const LEAST: f64 = 1.0;
+        #[cfg(feature = "openvdb")]
+        let half_width = self.band.map_or(LEAST, |band| band.half_width);
+        #[cfg(not(feature = "openvdb"))]
+        let half_width = LEAST;
+        half_width
     }
 
     /// Returns the settings in model units for `mesh`.

@@ -1,12 +1,12 @@
 //! What happened during an offset: the parts of the statistics file that the engine knows.
 
+use super::stored_band::Band;
 use crate::band::narrow_band::BandCounts;
 use crate::band::{BandSettings, LoneNodes};
 use crate::contour::ContourStatistics;
 use crate::edge::EdgeStatistics;
 use crate::filter::FilterStatistics;
 use crate::subvoxel::MissedFeatures;
-use crate::vdb::Band;
 
 /// Counts and times of one offset.
 #[derive(Clone, Debug, Default)]
@@ -56,8 +56,7 @@ impl OffsetStatistics {
 
     /// The memory of the band, where it is kept.
     pub(super) fn set_memory(&mut self, band: Option<&Band>) {
-        let memory = |band: &Band| band.surface.memory() + band.closest.as_ref().map_or(0, |g| g.memory());
-        self.vdb.memory = band.map_or(0, memory);
+        self.vdb.memory = band.map_or(0, Band::memory);
     }
 }
 

@@ -5,7 +5,8 @@ use crate::band::narrow_band::{BandStore, StoredPart};
 use crate::band::{BandSettings, LeafBatch};
 use crate::filter::Block;
 use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, Slab};
-use crate::vdb::{Band, ClosestGrid, SurfaceGrid, VdbError};
+pub(crate) use crate::vdb::Band;
+use crate::vdb::{ClosestGrid, SurfaceGrid, VdbError};
 
 impl StoredPart {
     /// Returns the part that is stored by these settings.
@@ -27,6 +28,14 @@ pub(crate) struct StoredBand {
 }
 
 impl StoredBand {
+    /// Returns the empty band that the settings ask for.
+    pub(crate) fn wanted(
+        band: &BandSettings,
+        settings: &OffsetSettings,
+    ) -> Result<Option<StoredBand>, VdbError> {
+        settings.band.as_ref().map(|options| StoredBand::new(band, options)).transpose()
+    }
+
     pub(crate) fn new(band: &BandSettings, options: &BandOptions) -> Result<StoredBand, VdbError> {
         Ok(StoredBand {
             surface: SurfaceGrid::new(band.lattice, band.half_width)?,

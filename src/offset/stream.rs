@@ -7,7 +7,7 @@ use super::pipeline::Prepared;
 use super::stages::run_stages;
 use super::stored_band::StoredBand;
 use super::voxel_refinement::refine_until_resolved;
-use super::{BandOptions, EmptyResult, OffsetError, OffsetSettings, OffsetStatistics, StreamResult};
+use super::{EmptyResult, OffsetError, OffsetSettings, OffsetStatistics, StreamResult};
 use crate::band::{BandSettings, count_layers};
 use crate::contour::halo;
 use crate::io::MeshStream;
@@ -77,8 +77,7 @@ pub fn offset_streamed(
         let on_lattice = |band_settings: &BandSettings, times| {
             sink.restart().map_err(sink_error)?;
             let mut statistics = OffsetStatistics::new(band_settings, times);
-            let stored = |options: &BandOptions| StoredBand::new(band_settings, options);
-            let mut stored = settings.band.as_ref().map(stored).transpose()?;
+            let mut stored = StoredBand::wanted(band_settings, settings)?;
             let started = Instant::now();
             let slabs = slabs(prepared, band_settings, partition)?;
             statistics.times.band += started.elapsed().as_secs_f64();
@@ -113,7 +112,13 @@ pub fn offset_streamed(
             Ok((band, statistics))
         };
         let (band, statistics) = refine_until_resolved(prepared, |_| true, on_lattice)?;
-        Ok(StreamResult { band, statistics })
+        #[cfg(not(feature = "openvdb"))]
+        let _ = band;
+        Ok(StreamResult {
+            #[cfg(feature = "openvdb")]
+            band,
+            statistics,
+        })
     })
 }
 

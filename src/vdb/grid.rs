@@ -42,6 +42,13 @@ pub struct Band {
     pub closest: Option<ClosestGrid>,
 }
 
+impl Band {
+    /// Returns the memory of all grids, in bytes.
+    pub fn memory(&self) -> u64 {
+        self.surface.memory() + self.closest.as_ref().map_or(0, ClosestGrid::memory)
+    }
+}
+
 impl SurfaceGrid {
     /// An empty level set: everything outside.
     ///
