@@ -16,8 +16,10 @@ pub(crate) enum StoredPart {
     /// Nothing.
     Nothing,
     /// The level set.
+    #[cfg(feature = "openvdb")]
     LevelSet,
     /// The level set and the closest triangles.
+    #[cfg(feature = "openvdb")]
     WithClosest,
 }
 
@@ -26,7 +28,9 @@ impl StoredPart {
     fn of(self, batch: &LeafBatch) -> Option<LeafBatch> {
         match self {
             StoredPart::Nothing => None,
+            #[cfg(feature = "openvdb")]
             StoredPart::LevelSet => Some(batch.level_set()),
+            #[cfg(feature = "openvdb")]
             StoredPart::WithClosest => {
                 Some(LeafBatch { closest: batch.closest.clone(), ..batch.level_set() })
             }
@@ -75,6 +79,7 @@ enum BandUse {
     /// Edges and a contour.
     Contour,
     /// Nothing: they are only stored.
+    #[cfg(feature = "openvdb")]
     Nothing,
 }
 
@@ -99,6 +104,7 @@ pub(crate) fn build<E: From<Cancelled> + Send>(
 }
 
 /// Builds the band into `store` only.
+#[cfg(feature = "openvdb")]
 pub(crate) fn store<E: From<Cancelled> + Send>(
     distance: &SignedDistance,
     settings: &BandSettings,

@@ -51,7 +51,8 @@ impl Replacement {
         Ok(Replacement { target, temporary })
     }
 
-    /// The temporary file, which may be overwritten or created anew.
+    /// Returns the path of the temporary file, which may be overwritten or created anew.
+    #[cfg(any(test, feature = "openvdb"))]
     pub fn path(&self) -> &Path {
         self.temporary.path()
     }

@@ -107,7 +107,9 @@ pub(super) fn check_memory(
     let wide = settings.half_width - 1.0;
     let stored = match stored {
         StoredPart::Nothing => 0.0,
+        #[cfg(feature = "openvdb")]
         StoredPart::LevelSet => BYTES_PER_STORED_CELL[0],
+        #[cfg(feature = "openvdb")]
         StoredPart::WithClosest => BYTES_PER_STORED_CELL[0] + BYTES_PER_CLOSEST_CELL,
     } + wide * BYTES_PER_STORED_CELL[1];
     let fixed = fixed_bytes(mesh) as f64;
