@@ -3,7 +3,7 @@
 use crate::candidates::CandidatePruner;
 use crate::filter::Block;
 use crate::lattice::Lattice;
-use crate::ssvh::Ssvh;
+use crate::ssvh::{Ssvh, TriangleSlot};
 
 /// A rule for the leaves of a band. [`build_with_policy`](super::build_with_policy) builds the
 /// band.
@@ -74,7 +74,7 @@ impl BlockCandidates<'_> {
     /// Whether all nodes are under the planes of all triangles in the list, and no triangle of the
     /// list is excepted.
     pub fn is_below(&self, is_excepted: impl Fn(u32) -> bool) -> bool {
-        let by_slot = |slot: u32| is_excepted(self.ssvh.id_at(slot));
+        let by_slot = |slot: TriangleSlot| is_excepted(self.ssvh.id_at(slot));
         self.pruner.is_below(self.depth, self.centre, self.block.width, by_slot)
     }
 }

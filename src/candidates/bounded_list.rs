@@ -2,7 +2,7 @@
 //! points.
 
 use crate::geom::simd::{F32s, F64s, Vec3F32s, dispatch};
-use crate::ssvh::{Closest8, Hit, Ssvh};
+use crate::ssvh::{Closest8, Hit, Ssvh, TriangleSlot};
 use glam::DVec3;
 use pulp::{Simd, WithSimd};
 
@@ -83,7 +83,7 @@ pub(super) fn base(bounds: &[PlaneBound]) -> f32 {
 #[derive(Clone, Copy, Debug)]
 pub struct Candidates<'a> {
     /// Slots of the triangles in the hierarchy.
-    pub(super) slots: &'a [u32],
+    pub(super) slots: &'a [TriangleSlot],
     /// Packed bounds of the triangles.
     pub(super) packed: &'a [u32],
     /// Base of the bounds, in voxels.

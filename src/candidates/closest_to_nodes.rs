@@ -3,7 +3,7 @@
 use super::bounded_list::PlaneBound;
 use super::triangle_f32::{EightPoints, TriangleF32};
 use crate::geom::simd::{F32s, F64s, Vec3F32s};
-use crate::ssvh::{Closest8, Hit, Ssvh};
+use crate::ssvh::{Closest8, Hit, Ssvh, TriangleSlot};
 use pulp::{Simd, WithSimd};
 
 /// A triangle whose bound is near enough to a node.
@@ -21,7 +21,7 @@ pub(super) struct ClosestToNodes<'a> {
     /// The leaf's triangles.
     pub(super) triangles: &'a [TriangleF32],
     /// Slots of the leaf's triangles in the hierarchy.
-    pub(super) slots: &'a [u32],
+    pub(super) slots: &'a [TriangleSlot],
     /// Candidates of the block, as numbers among the leaf's triangles.
     pub(super) list: &'a [u32],
     /// Bounds of the candidates around the block's centre.

@@ -3,6 +3,7 @@
 use super::bounded_list::{Candidates, PlaneBound, base, packed};
 use crate::filter::Block;
 use crate::lattice::{Ijk, Lattice, LeafIndex};
+use crate::ssvh::TriangleSlot;
 
 /// Returns the number of the block of 2^3 nodes that holds a node, in 0..64 within its leaf.
 ///
@@ -22,7 +23,7 @@ pub struct BlockLists {
     /// Base of the bounds of each block's list, in voxels.
     bases: Vec<f32>,
     /// Slot of each candidate in the hierarchy.
-    slots: Vec<u32>,
+    slots: Vec<TriangleSlot>,
     /// Packed bound of each candidate.
     packed: Vec<u32>,
 }
@@ -38,7 +39,7 @@ struct Leaf {
 
 /// The list of a block.
 struct List<'a> {
-    slots: &'a [u32],
+    slots: &'a [TriangleSlot],
     packed: &'a [u32],
     base: f32,
 }
@@ -84,7 +85,12 @@ impl BlockLists {
     ///
     /// # Panics
     /// When no leaf was begun, or the block is not the next.
-    pub fn push(&mut self, origin: Ijk, slots: impl ExactSizeIterator<Item = u32>, bounds: &[PlaneBound]) {
+    pub fn push(
+        &mut self,
+        origin: Ijk,
+        slots: impl ExactSizeIterator<Item = TriangleSlot>,
+        bounds: &[PlaneBound],
+    ) {
         let leaf = self.leaves.last_mut().expect("a leaf was begun");
         let number = block_in_leaf(origin);
         assert!(leaf.mask >> number == 0, "blocks come by ascending number");

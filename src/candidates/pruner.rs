@@ -6,7 +6,7 @@ use super::triangle_f32::{EightPoints, ROUNDING, TriangleF32};
 use crate::filter::Block;
 use crate::geom::simd::{F32s, Vec3F32s, dispatch};
 use crate::lattice::Lattice;
-use crate::ssvh::{Hit, Ssvh};
+use crate::ssvh::{Hit, Ssvh, TriangleSlot};
 use glam::DVec3;
 use pulp::{Simd, WithSimd};
 
@@ -21,7 +21,7 @@ const MAX_RADIUS: f32 = 2.5 * 1.732_051;
 #[derive(Debug, Default)]
 pub struct CandidatePruner {
     /// Slots of the leaf's candidates in the hierarchy.
-    slots: Vec<u32>,
+    slots: Vec<TriangleSlot>,
     /// The leaf's candidates, seen from the leaf's centre.
     triangles: Vec<TriangleF32>,
     /// Rounding error of a distance, in voxels.
@@ -30,7 +30,7 @@ pub struct CandidatePruner {
     voxel: f64,
     levels: [Level; LEVELS],
     /// The list that was asked for last, as slots.
-    list_slots: Vec<u32>,
+    list_slots: Vec<TriangleSlot>,
     /// Working memory of [`ClosestToNodes`].
     survivors: Vec<Survivor>,
 }
@@ -182,7 +182,7 @@ impl CandidatePruner {
         depth: usize,
         centre: [f32; 3],
         width: i32,
-        is_excepted: impl Fn(u32) -> bool,
+        is_excepted: impl Fn(TriangleSlot) -> bool,
     ) -> bool {
         let half = 0.5 * (width - 1) as f32;
         self.levels[depth].list().iter().all(|&n| {
@@ -198,7 +198,7 @@ impl CandidatePruner {
 
     /// Returns the list of the block of 2^3 nodes that was pruned to last: slots in the hierarchy,
     /// and bounds around the block's centre.
-    pub fn bounded(&self) -> (impl ExactSizeIterator<Item = u32> + '_, &[PlaneBound]) {
+    pub fn bounded(&self) -> (impl ExactSizeIterator<Item = TriangleSlot> + '_, &[PlaneBound]) {
         let level = &self.levels[LEVELS - 1];
         (level.list().iter().map(|&n| self.slots[n as usize]), level.planes())
     }
@@ -242,7 +242,7 @@ impl CandidatePruner {
     }
 
     /// Returns the list of `depth`, as slots in the hierarchy.
-    pub fn list(&mut self, depth: usize) -> &[u32] {
+    pub fn list(&mut self, depth: usize) -> &[TriangleSlot] {
         let list = self.levels[depth].list().iter();
         self.list_slots.clear();
         self.list_slots.extend(list.map(|&n| self.slots[n as usize]));

@@ -3,7 +3,7 @@ use crate::filter::Block;
 use crate::lattice::{Ijk, Lattice};
 use crate::mesh::TriMesh;
 use crate::mesh::shapes;
-use crate::ssvh::Ssvh;
+use crate::ssvh::{Ssvh, TriangleSlot};
 use glam::DVec3;
 use proptest::prelude::*;
 
@@ -175,7 +175,7 @@ fn lists_are_kept_by_block() {
     let push = |lists: &mut BlockLists, origin: [i32; 3], slots: &[u32]| {
         let bound = |&p: &u32| PlaneBound { low: p as f32, direction: [0.6, 0.0, -0.8] };
         let bounds: Vec<PlaneBound> = slots.iter().map(bound).collect();
-        lists.push(Ijk(origin), slots.iter().copied(), &bounds);
+        lists.push(Ijk(origin), slots.iter().copied().map(TriangleSlot), &bounds);
     };
     let mut lists = BlockLists::default();
     lists.begin_leaf();
@@ -197,7 +197,9 @@ fn lists_are_kept_by_block() {
     push(&mut others, [30, 6, 6], &[1, 2, 3]);
     let parts = [(vec![Ijk([0, 0, 0]), Ijk([8, 0, 0])], lists), (vec![Ijk([24, 0, 0])], others)];
     let lists = CandidateLists::new(Lattice { voxel: 0.5 }, parts);
-    let named = |near: Option<Candidates>| -> Option<Vec<u32>> { near.map(|near| near.slots.to_vec()) };
+    let named = |near: Option<Candidates>| -> Option<Vec<u32>> {
+        near.map(|near| near.slots.iter().map(|slot| slot.0).collect())
+    };
     assert_eq!(named(lists.of_cell(Ijk([1, 1, 3]))), Some(vec![6, 5]));
     assert_eq!(named(lists.of_cell(Ijk([5, 0, 1]))), Some(vec![7]));
     assert_eq!(named(lists.of_cell(Ijk([31, 7, 7]))), Some(vec![1, 2, 3]));

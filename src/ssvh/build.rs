@@ -1,5 +1,6 @@
 //! Building the hierarchy: top-down median splits into packed subtrees, volumes fitted bottom-up.
 
+use super::TriangleSlot;
 use super::node::{Level, Node, WIDTH};
 use crate::geom::aabb::Aabb;
 use crate::geom::swept::{Sphere, Swept};
@@ -16,7 +17,7 @@ pub struct Ssvh {
     /// Number in the mesh of the triangle in each slot. Slots are the hierarchy's own order.
     pub(super) ids: Vec<u32>,
     /// Position in the hierarchy's order by mesh triangle number.
-    slots: Vec<u32>,
+    slots: Vec<TriangleSlot>,
     pub(super) centre: DVec3,
     /// No coordinate relative to the centre is larger than this.
     pub(super) extent: f64,
@@ -68,9 +69,9 @@ impl Ssvh {
         Builder { mesh, centre }.build(&mut primitives, &mut nodes, 0, 0);
 
         let ids: Vec<u32> = primitives.par_iter().map(|p| p.id).collect();
-        let mut slots = vec![0; count];
+        let mut slots = vec![TriangleSlot::default(); count];
         for (slot, &id) in ids.iter().enumerate() {
-            slots[id as usize] = slot as u32;
+            slots[id as usize] = TriangleSlot(slot as u32);
         }
         let triangles = ids.par_iter().map(|&id| triangle(mesh, id)).collect();
         Ssvh { nodes, triangles, ids, slots, centre, extent }
@@ -78,12 +79,12 @@ impl Ssvh {
 
     /// Returns the triangle with mesh number `id`.
     pub fn triangle(&self, id: u32) -> &Triangle {
-        &self.triangles[self.slots[id as usize] as usize]
+        self.triangle_at(self.slot(id))
     }
 
     /// Returns the slot of mesh triangle `id` in the hierarchy's order.
-    pub(super) fn slot(&self, id: u32) -> usize {
-        self.slots[id as usize] as usize
+    pub(super) fn slot(&self, id: u32) -> TriangleSlot {
+        self.slots[id as usize]
     }
 
     /// Returns the number of triangles.

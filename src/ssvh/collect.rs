@@ -1,7 +1,7 @@
 //! Lists of triangles: all that come near enough to one of eight points, and the closest of a list.
 
 use super::query::{Around, Hit, Visit, descend};
-use super::{Closest8, Ssvh};
+use super::{Closest8, Ssvh, TriangleSlot};
 use crate::geom::simd::dispatch;
 use crate::geom::triangle::Triangle;
 use glam::DVec3;
@@ -11,25 +11,31 @@ impl Ssvh {
     /// Appends to `found` the slots, in the hierarchy's order, of all triangles whose distance from
     /// one of the points is at most that point's limit, and of some that are a little farther.
     /// Gives up when `found` holds more than `most`.
-    pub fn collect(&self, points: &[DVec3; 8], limits: &[f64; 8], most: usize, found: &mut Vec<u32>) {
+    pub fn collect(
+        &self,
+        points: &[DVec3; 8],
+        limits: &[f64; 8],
+        most: usize,
+        found: &mut Vec<TriangleSlot>,
+    ) {
         dispatch(Collect { tree: self, points, limits, most, found });
     }
 
     /// Returns the triangle at a slot of the hierarchy's order.
     #[inline]
-    pub fn triangle_at(&self, slot: u32) -> &Triangle {
-        &self.triangles[slot as usize]
+    pub fn triangle_at(&self, slot: TriangleSlot) -> &Triangle {
+        &self.triangles[slot.index()]
     }
 
     /// Returns the mesh number of the triangle at a slot of the hierarchy's order.
     #[inline]
-    pub fn id_at(&self, slot: u32) -> u32 {
-        self.ids[slot as usize]
+    pub fn id_at(&self, slot: TriangleSlot) -> u32 {
+        self.ids[slot.index()]
     }
 
     /// Returns the triangle at a slot of the hierarchy's order, with its squared distance from `p`.
     #[inline]
-    pub fn hit(&self, slot: u32, p: DVec3) -> Hit {
+    pub fn hit(&self, slot: TriangleSlot, p: DVec3) -> Hit {
         Hit { triangle: self.id_at(slot), distance_squared: self.triangle_at(slot).distance_squared(p) }
     }
 
@@ -38,7 +44,7 @@ impl Ssvh {
     ///
     /// # Panics
     /// When there are none.
-    pub fn closest8_among(&self, slots: &[u32], points: &[DVec3; 8]) -> [Hit; 8] {
+    pub fn closest8_among(&self, slots: &[TriangleSlot], points: &[DVec3; 8]) -> [Hit; 8] {
         assert!(!slots.is_empty(), "a list of triangles");
         let points = [points.map(|p| p.x), points.map(|p| p.y), points.map(|p| p.z)];
         dispatch(Closest8Among { ssvh: self, slots, points: &points })
@@ -48,7 +54,7 @@ impl Ssvh {
 /// The closest of a list to eight points.
 struct Closest8Among<'a> {
     ssvh: &'a Ssvh,
-    slots: &'a [u32],
+    slots: &'a [TriangleSlot],
     points: &'a [[f64; 8]; 3],
 }
 
@@ -72,7 +78,7 @@ struct Collect<'a> {
     points: &'a [DVec3; 8],
     limits: &'a [f64; 8],
     most: usize,
-    found: &'a mut Vec<u32>,
+    found: &'a mut Vec<TriangleSlot>,
 }
 
 impl WithSimd for Collect<'_> {
@@ -93,12 +99,12 @@ impl WithSimd for Collect<'_> {
 /// Keeps all.
 struct Append<'a> {
     most: usize,
-    found: &'a mut Vec<u32>,
+    found: &'a mut Vec<TriangleSlot>,
 }
 
 impl Visit for Append<'_> {
     #[inline(always)]
-    fn visit<S: Simd>(&mut self, _: S, slot: u32, _: &mut [f32; 8]) -> bool {
+    fn visit<S: Simd>(&mut self, _: S, slot: TriangleSlot, _: &mut [f32; 8]) -> bool {
         self.found.push(slot);
         self.found.len() <= self.most
     }

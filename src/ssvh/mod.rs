@@ -15,6 +15,7 @@ mod collect;
 mod nearest;
 mod node;
 mod query;
+mod slot;
 #[cfg(test)]
 mod tests;
 mod validate;
@@ -22,4 +23,5 @@ mod validate;
 pub use build::Ssvh;
 pub use nearest::Closest8;
 pub use query::Hit;
+pub use slot::TriangleSlot;
 pub use validate::InvalidSsvh;

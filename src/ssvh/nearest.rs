@@ -1,7 +1,7 @@
 //! The nearest triangles of eight points while candidates are gone through.
 
-use super::Ssvh;
 use super::query::{Hit, widened};
+use super::{Ssvh, TriangleSlot};
 use crate::geom::simd::{F64s, Vec3F64s};
 use crate::geom::triangle::SplatTriangle;
 use pulp::Simd;
@@ -47,7 +47,13 @@ impl Closest8 {
 
     /// Offers the triangle at a slot of the hierarchy's order to all points.
     #[inline(always)]
-    pub fn offer_to_all<S: Simd>(&mut self, simd: S, tree: &Ssvh, slot: u32, points: &[[f64; 8]; 3]) {
+    pub fn offer_to_all<S: Simd>(
+        &mut self,
+        simd: S,
+        tree: &Ssvh,
+        slot: TriangleSlot,
+        points: &[[f64; 8]; 3],
+    ) {
         let triangle = tree.triangle_at(slot).splat(simd);
         for vector in 0..8 / F64s::<S>::COUNT {
             self.offer(simd, &triangle, tree.id_at(slot), points, vector);

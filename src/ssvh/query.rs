@@ -1,7 +1,7 @@
 //! Closest-triangle queries, for one point and for eight that are near each other.
 
 use super::node::{Level, Node, WIDTH};
-use super::{Closest8, Ssvh};
+use super::{Closest8, Ssvh, TriangleSlot};
 use crate::geom::simd::dispatch;
 use glam::{DVec3, Vec3};
 use pulp::{Simd, WithSimd};
@@ -41,7 +41,7 @@ impl Ssvh {
     /// Returns what [`closest`](Self::closest) returns, faster when `guess` is a triangle close to
     /// `p`.
     pub fn closest_from(&self, p: DVec3, guess: u32) -> Hit {
-        let distance_squared = self.triangles[self.slot(guess)].distance_squared(p);
+        let distance_squared = self.triangle(guess).distance_squared(p);
         dispatch(Improve { tree: self, p, best: Hit { triangle: guess, distance_squared } })
     }
 
@@ -133,7 +133,7 @@ impl WithSimd for Improve8<'_> {
         let around = Around::new(tree, points);
         let mut closest = Closest { tree, around: &around, nearest: Closest8::unless_nearer(guess) };
         let mut limits = [0.0; 8];
-        closest.visit(simd, tree.slot(guess) as u32, &mut limits);
+        closest.visit(simd, tree.slot(guess), &mut limits);
         descend(simd, tree, &around, limits, &mut closest);
         closest.nearest.hits()
     }
@@ -148,7 +148,7 @@ struct Closest<'a> {
 
 impl Visit for Closest<'_> {
     #[inline(always)]
-    fn visit<S: Simd>(&mut self, simd: S, slot: u32, limits: &mut [f32; 8]) -> bool {
+    fn visit<S: Simd>(&mut self, simd: S, slot: TriangleSlot, limits: &mut [f32; 8]) -> bool {
         self.nearest.offer_to_all(simd, self.tree, slot, &self.around.exact);
         self.nearest.limits(self.around.slack, limits);
         true
@@ -159,7 +159,7 @@ impl Visit for Closest<'_> {
 pub(super) trait Visit {
     /// Takes the triangle at a slot of the hierarchy's order. May lower the limits, within which of
     /// each point triangles matter. Returns whether to go on.
-    fn visit<S: Simd>(&mut self, simd: S, slot: u32, limits: &mut [f32; 8]) -> bool;
+    fn visit<S: Simd>(&mut self, simd: S, slot: TriangleSlot, limits: &mut [f32; 8]) -> bool;
 }
 
 /// Goes down to all triangles that can be within the limits of eight points. A volume matters when
@@ -185,7 +185,7 @@ pub(super) fn descend<S: Simd>(
             match node.level {
                 Level::Inner => stack.push(first, distance, node.children[lane]),
                 Level::Leaf => {
-                    if !visitor.visit(simd, node.children[lane], &mut limits) {
+                    if !visitor.visit(simd, TriangleSlot(node.children[lane]), &mut limits) {
                         return;
                     }
                     limit = largest(&limits) + around.radius;
