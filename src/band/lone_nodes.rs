@@ -4,12 +4,16 @@
 //! body of its own of it, a hair away from the body that it is the tip of:
 //!
 //! ```text
-//!      outside   .      outside              The tip's node touches the others across the diagonal of a cell only. It
-//!               / \                         changes sides, and the contour finds the corner from the cells beside it,
-//!      outside / o \    outside             like all corners that lie outside of the cells that see them.
+//!      outside   .      outside
+//!               / \
+//!      outside / o \    outside
 //!    ---------/     \---------
 //!      o        o        o
 //! ```
+//!
+//! The tip's node touches the others across the diagonal of a cell only. It changes sides, and the
+//! contour finds the corner from the cells beside it, like all corners that lie outside of the cells
+//! that see them.
 //!
 //! A node that is all that there is of a small part stays: no other node of its side can be reached
 //! from it.

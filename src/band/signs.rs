@@ -97,9 +97,9 @@ impl SignField {
         self.slab.depth(self.origin(leaf), most)
     }
 
-    /// Whether the field is cut off before the first (`step` -1) or after the last (`step` 1) nodes
-    /// of a leaf along x.
-    pub fn is_cut(&self, leaf: LeafId, step: i32) -> bool {
+    /// Whether the field ends before the first (`step` -1) or after the last (`step` 1) nodes of a
+    /// leaf along x, at a border of the slab.
+    pub fn is_border(&self, leaf: LeafId, step: i32) -> bool {
         !self.slab.computes(self.origin(leaf) + Ijk::new(step * LEAF_DIM, 0, 0), LEAF_DIM)
     }
 

@@ -3,10 +3,13 @@
 //! ```text
 //!        r                    r
 //!      / | \                / | \
-//!     /  |  \              /  |  \       A triangle p m q whose corners lie on a line. Dropped alone, it would
-//!    p-------q    ->      p---m---q      leave p m and m q without the long side p q of its neighbour p q r.
-//!     `--m--'              (below p m and m q are their neighbours, as before)
+//!     /  |  \              /  |  \
+//!    p-------q    ->      p---m---q
+//!     `--m--'
 //! ```
+//!
+//! The corners of the triangle p m q lie on a line. Dropped alone, it would leave p m and m q without
+//! the long side p q of its neighbour p q r. Below p m and m q are their neighbours, before and after.
 //!
 //! The triangle across its longest edge gets the middle corner instead: p q r becomes p m r and m q
 //! r. Their sum has exactly the edges of the two triangles before, so what was closed stays closed,

@@ -6,8 +6,8 @@
 //! searched between the corners:
 //!
 //! ```text
-//!   nodes that disagree -> points with the other sign -> on the wrong side of the mesh? -> features
-//!        directions                  search                        confirm                 features
+//!   nodes that disagree -> points with the other sign -> on the mesh's wrong side? -> features
+//!        directions                  search                        confirm            features
 //! ```
 //!
 //! Promised: every feature holds a point whose true sign differs from the result's, by more than

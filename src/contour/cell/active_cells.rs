@@ -118,7 +118,7 @@ impl CellNumbers {
                 if let Some(corners) = CornerSigns::new(signs, leaf) {
                     cells.active = corners.active();
                     // Half of the corners of the last cells are not known.
-                    if signs.is_cut(leaf, 1) {
+                    if signs.is_border(leaf, 1) {
                         cells.active[7] = 0;
                     }
                     let mut count = 0;

@@ -94,8 +94,8 @@ pub fn for_polygons(
 fn is_at_cut(cells: &Cells<'_>, leaf: LeafId, local: Ijk) -> bool {
     const LAST: i32 = LEAF_DIM - 1;
     match local.0[0] {
-        0 => cells.context.signs.is_cut(leaf, -1),
-        LAST => cells.context.signs.is_cut(leaf, 1),
+        0 => cells.context.signs.is_border(leaf, -1),
+        LAST => cells.context.signs.is_border(leaf, 1),
         _ => false,
     }
 }

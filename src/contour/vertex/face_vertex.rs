@@ -116,7 +116,7 @@ fn in_leaf(cells: &Cells<'_>, vertices: &[[f64; 3]], leaf: LeafId) -> (Vec<Marks
         let mut marks = Marks { cell, before: positions.len() as u16, pairs: 0 };
         for axis in Axis::ALL {
             let face = Face::upper(axis);
-            let is_last = axis == Axis::X && local.0[0] == LEAF_DIM - 2 && signs.is_cut(leaf, 1);
+            let is_last = axis == Axis::X && local.0[0] == LEAF_DIM - 2 && signs.is_border(leaf, 1);
             if is_last || case.pairs(face).is_empty() {
                 continue;
             }
