@@ -3,7 +3,6 @@
 //! Lengths are in model units unless a name says otherwise. Vertex and triangle numbers are those
 //! of the file. All types can be serialised; the names of the fields are those of the JSON file.
 
-
 /// Report of [`verify`](super::verify).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
