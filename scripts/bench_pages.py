@@ -197,7 +197,7 @@ def noisy(data):
         bad = quality["topology"]["border_edges"] + quality["topology"]["non_manifold_edges"]
         cells = [count(r["input"]), count(r["crossed"]), count(r["jumps"]), seconds(r["engine"])]
         cells += [seconds(r["phases"]["contour"]), megabytes(r["memory"])]
-        cells += [error(quality["distance"]["surface"]["mean"]["voxels"])]
+        cells += [error(quality["missing"]["faces"]["mean"]["voxels"])]
         rows.append([what, *cells, count(quality["intersections"]["pairs"]), count(bad)])
     columns = [
         "scan",
@@ -208,7 +208,7 @@ def noisy(data):
         "contour, s",
         "memory, MB",
     ]
-    return table([*columns, "mean error", "crossing pairs", "bad edges"], rows)
+    return table([*columns, "missing, mean", "crossing pairs", "bad edges"], rows)
 
 
 def thickening(data):

@@ -59,7 +59,8 @@ exocarp offset MODEL -d 2% --resolution N --stream --max-memory 500M --threads 2
 A scan as it is, and with each triangle cut into four and a normal deviate of {deviate} of the
 diagonal added to each coordinate (`scripts/noise.py`). The noise folds needles over one another, so
 the sign by pseudonormals is wrong in places: such lattice edges are *jumps*, and no creases are
-looked for there. {single}
+looked for there. The surface is closed by walls along them, so the mean of *missing* over the
+faces of the scan says how near the result is. {single}
 
 ```sh
 exocarp offset SCAN -d 2% --resolution N --sign pseudonormal --threads 2 -o out.ply --stats out.json
