@@ -25,8 +25,8 @@ ARGS ?=
 BENCH_MODEL ?= anchor
 BENCH_RESOLUTION ?= 256
 PYTHON ?= python3
-# What `make bench-report` measures, and what makes the meshes of `make pictures`.
-PROGRAM ?= target/release/exocarp
+# What `make bench-report` measures: the program as it is published.
+PROGRAM ?= target/dist/exocarp
 # What `make instructions` compares.
 OLD ?= HEAD~1
 NEW ?= HEAD
@@ -61,12 +61,14 @@ bench: build
 	target/release/exocarp compare out/bench.ply -d 2% --resolution $(BENCH_RESOLUTION) --runs 5 --once-above 25 \
 	    --python '$(PYTHON)'
 
-# Writes docs/benchmarks.md and docs/compare from one run; MeshLib if PYTHON can import it.
-bench-report: build
+# Writes docs/benchmarks.md, what is beside it, and the figures of README.md from one run. The models
+# are those of EXOCARP_MODELS, MeshLib is compared if PYTHON can import it.
+bench-report: setup
+	cargo build --profile dist --locked
 	python3 scripts/bench_report.py $(if $(QUICK),--quick) --program '$(PROGRAM)' --python '$(PYTHON)'
 
 pictures: build
-	python3 scripts/pictures.py --program '$(PROGRAM)'
+	python3 scripts/pictures.py
 
 # Instructions of two commits on a small case: make instructions OLD=HEAD~1 NEW=HEAD
 instructions:

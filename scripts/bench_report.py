@@ -371,7 +371,7 @@ def main():
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument(
-        "--program", default="target/release/exocarp", help="the program to measure"
+        "--program", default="target/dist/exocarp", help="the program to measure"
     )
     parser.add_argument(
         "--models",
