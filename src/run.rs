@@ -1,4 +1,4 @@
-//! How a computation is run, as opposed to what it computes: threads, cancellation, progress.
+//! Running of a computation, as opposed to what it computes: threads, cancellation, progress.
 //!
 //! [`RunSettings`] is passed last to everything that takes time. Nothing in it changes a result:
 //! the same input gives the same bytes for every number of threads.
@@ -125,13 +125,13 @@ impl RunSettings {
         Ok(RunSettings { pool: Arc::new(pool), cancel: CancelToken::default(), progress: None })
     }
 
-    /// The same run, stopped by `cancel`.
+    /// Returns this run, stopped by `cancel`.
     pub fn with_cancel(mut self, cancel: CancelToken) -> Self {
         self.cancel = cancel;
         self
     }
 
-    /// The same run, reporting to `progress`.
+    /// Returns this run, reporting to `progress`.
     pub fn with_progress(mut self, progress: Arc<dyn Progress>) -> Self {
         self.progress = Some(progress);
         self

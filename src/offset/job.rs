@@ -1,4 +1,4 @@
-//! What tells the tiles of one offset from those of another: a number made of the input and the settings.
+//! Identity of an offset, which tells its tiles from those of another: a number made of the input and the settings.
 //!
 //! Machines that share nothing compare it, so it must be the same whatever compiler made the program, and
 //! whatever the fields and types are called in the code. So each setting goes in under a name and as bytes

@@ -1,4 +1,4 @@
-//! What an offset takes, told before the band is made.
+//! Memory of an offset, estimated before the band is made.
 
 use super::error::OffsetError;
 use crate::band::narrow_band::StoredPart;
@@ -51,7 +51,7 @@ impl MemoryError {
 // Everything below is peak memory of the whole program, measured on nine models (armadillo, fandisk, rocker-arm, anchor, bunny,
 // elephant, knot, cheese, dragon) at +2% and -2%, 64 to 1024 voxels. The sums are within 20% of what was taken.
 
-/// What the program takes by itself, OpenVDB's library and its tables included.
+/// Bytes that the program takes by itself, OpenVDB's library and its tables included.
 const BYTES_OF_PROGRAM: u64 = 42_000_000;
 
 /// Bytes per input triangle: topology, hierarchy, pseudonormals.
@@ -81,12 +81,12 @@ pub(super) fn leaves_within(mesh: &TriMesh, bytes: u64) -> u64 {
     bytes.saturating_sub(slab_bytes(mesh)) / BYTES_PER_LEAF
 }
 
-/// What program, input and the lists of its triangles take, in bytes: with slabs, and however small they are.
+/// Returns the bytes of program, input and the lists of its triangles: with slabs, and however small they are.
 fn slab_bytes(mesh: &TriMesh) -> u64 {
     fixed_bytes(mesh) + (mesh.triangles.len() as f64 * BYTES_PER_FEATURE) as u64
 }
 
-/// What program and input take, in bytes.
+/// Returns the bytes of program and input.
 fn fixed_bytes(mesh: &TriMesh) -> u64 {
     BYTES_OF_PROGRAM + (mesh.triangles.len() as f64 * BYTES_PER_TRIANGLE) as u64
 }

@@ -1,4 +1,4 @@
-//! Where the lattice is cut into slabs: by memory, or into equal shares of the surface.
+//! Partition of the lattice into slabs: by memory, or into equal shares of the surface.
 
 use crate::band::Layers;
 use crate::lattice::{LEAF_DIM, Slab};

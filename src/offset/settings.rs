@@ -131,7 +131,7 @@ pub enum SettingsError {
     /// A length is too large or too small to work with ([`LENGTHS`]).
     #[error("the {what} is {length:e}, and lengths from {:e} to {:e} can be worked with; choose another one", LENGTHS.start(), LENGTHS.end())]
     Length {
-        /// Which length.
+        /// Name of the length.
         what: &'static str,
         /// The length.
         length: f64,

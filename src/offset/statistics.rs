@@ -1,4 +1,4 @@
-//! What happened during an offset: the parts of the statistics file that the engine knows.
+//! Statistics of an offset: the parts of the statistics file that the engine knows.
 
 use super::stored_band::Band;
 use crate::band::narrow_band::BandCounts;
@@ -31,7 +31,7 @@ pub struct OffsetStatistics {
     pub missed: MissedFeatures,
     /// Slabs that were worked off one after the other.
     pub slabs: usize,
-    /// How often the voxel size was halved to see more.
+    /// Number of times that the voxel size was halved to see more.
     pub halvings: u32,
     /// The band's size.
     pub vdb: VdbStatistics,
@@ -87,7 +87,7 @@ impl EngineTimes {
 pub struct VdbStatistics {
     /// Active voxels of the grid `surface`.
     pub active_voxels: u64,
-    /// Its leaves.
+    /// Number of leaves of the band.
     pub leaves: u64,
     /// Bytes in memory, of both grids where there are two; 0 where the band is not kept.
     pub memory: u64,

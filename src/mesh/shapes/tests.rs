@@ -2,7 +2,7 @@ use super::*;
 use crate::mesh::measure::signed_volume;
 use std::collections::BTreeMap;
 
-/// How often each directed edge occurs.
+/// Counts the occurrences of each directed edge.
 fn directed_edges(mesh: &TriMesh) -> BTreeMap<(u32, u32), u32> {
     let mut count = BTreeMap::new();
     for [a, b, c] in &mesh.triangles {
