@@ -212,7 +212,7 @@ fn prepare(
     run: &RunSettings,
 ) -> Result<Comparison, CompareError> {
     if settings.runs == 0 || settings.methods.is_empty() {
-        return Err(CompareError::Setting("there is nothing to compare: name a method and a run").into());
+        return Err(CompareError::Setting("there is nothing to compare: name a method and a run"));
     }
     if mesh.triangles.is_empty() {
         return Err(InputError::NoTriangles.into());
