@@ -1,5 +1,10 @@
 //! exocarp: offset surfaces of triangle meshes.
 
+#![cfg_attr(
+    not(test),
+    warn(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, clippy::too_many_lines)
+)]
+
 pub mod error;
 pub mod geom;
 pub mod run;
