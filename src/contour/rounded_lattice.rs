@@ -1,22 +1,25 @@
 //! The lattice as it is written: node planes and vertices rounded to the output's precision.
 //!
-//! They are rounded *before* anything is decided on them. Rounding afterwards would void every decision.
+//! They are rounded *before* anything is decided on them. Rounding afterwards would void every
+//! decision.
 
 use super::error::ContourError;
 use crate::lattice::{Ijk, Lattice};
 use crate::quantity::Precision;
 use glam::DVec3;
 
-/// The distance that vertices keep from the walls of their cell, in voxels, as long as rounding allows.
+/// The distance that vertices keep from the walls of their cell, in voxels, as long as rounding
+/// allows.
 ///
-/// Smaller values let triangles degenerate to needles of that width. Larger ones blunt features that lie
-/// close to a cell's wall by up to as much.
+/// Smaller values let triangles degenerate to needles of that width. Larger ones blunt features
+/// that lie close to a cell's wall by up to as much.
 const MARGIN: f64 = 1e-3;
 
 /// The largest margin, in voxels.
 ///
-/// Beyond it a cell has fewer than 16 representable coordinates along an axis, vertices are displaced
-/// visibly, and the midpoint of a sheet is no longer sure to lie within its walls after rounding.
+/// Beyond it a cell has fewer than 16 representable coordinates along an axis, vertices are
+/// displaced visibly, and the midpoint of a sheet is no longer sure to lie within its walls after
+/// rounding.
 const MAX_MARGIN: f64 = 0.125;
 
 /// The lattice with rounded node planes.
@@ -34,8 +37,8 @@ impl RoundedLattice {
     /// When the coordinates there are too coarse for the voxel size.
     pub fn new(lattice: Lattice, precision: Precision, extent: u32) -> Result<RoundedLattice, ContourError> {
         let far = lattice.voxel * f64::from(extent);
-        // Two units in the last place: node planes and vertices are off by up to half a unit each. Half
-        // a unit in all is the limit below which lattices fail.
+        // Two units in the last place: node planes and vertices are off by up to half a unit each.
+        // Half a unit in all is the limit below which lattices fail.
         let least = 2.0 * precision.ulp(far) / lattice.voxel;
         // False for what is not a number, too.
         if least <= MAX_MARGIN && lattice.voxel > 0.0 {
@@ -69,8 +72,8 @@ impl RoundedLattice {
         ijk.0.map(|i| self.plane(i))
     }
 
-    /// Returns the rounded world position of the point `local` of a cell, in voxels from its lowest corner
-    /// on the lattice before rounding.
+    /// Returns the rounded world position of the point `local` of a cell, in voxels from its lowest
+    /// corner on the lattice before rounding.
     #[inline]
     pub fn round_in_cell(&self, cell: Ijk, local: DVec3) -> [f64; 3] {
         self.round(self.unrounded(cell, local))
@@ -83,8 +86,8 @@ impl RoundedLattice {
         self.voxel() * (DVec3::from(cell.0.map(f64::from)) + local)
     }
 
-    /// Returns the rounded world position of the point of a cell whose coordinates between its rounded walls
-    /// are `local`, 0 to 1 each.
+    /// Returns the rounded world position of the point of a cell whose coordinates between its
+    /// rounded walls are `local`, 0 to 1 each.
     #[inline]
     pub fn between_walls(&self, cell: Ijk, local: [f64; 3]) -> [f64; 3] {
         std::array::from_fn(|a| {
@@ -93,8 +96,8 @@ impl RoundedLattice {
         })
     }
 
-    /// Inverts [`between_walls`](Self::between_walls), exact to a few units in the last place of the
-    /// *result*, however far from the origin the cell is.
+    /// Inverts [`between_walls`](Self::between_walls), exact to a few units in the last place of
+    /// the *result*, however far from the origin the cell is.
     #[inline]
     pub fn local(&self, cell: Ijk, position: [f64; 3]) -> DVec3 {
         DVec3::from_array(std::array::from_fn(|a| {
@@ -109,8 +112,8 @@ impl RoundedLattice {
         position.to_array().map(|x| self.precision.round(x))
     }
 
-    /// Returns a position along an edge, in voxels, kept the margin away from the ends. What is not a number
-    /// becomes the lower end.
+    /// Returns a position along an edge, in voxels, kept the margin away from the ends. What is not
+    /// a number becomes the lower end.
     #[inline]
     pub fn clamp_to_edge(&self, t: f64) -> f64 {
         if t >= self.margin { t.min(1.0 - self.margin) } else { self.margin }

@@ -20,14 +20,14 @@ use std::ops::Range;
 ///
 /// With `surface`, features are placed outside of their cells as well, and the tolerance is kept.
 ///
-/// Vertices and triangles come leaf by leaf. The vertices of a leaf are its cell vertices (by cell, then
-/// by sheet), face vertices, edge vertices, then vertices that splits added. The triangles of a leaf come
-/// in the order of their grid edges, then those that splits added. The result is the same for every
-/// number of threads.
+/// Vertices and triangles come leaf by leaf. The vertices of a leaf are its cell vertices (by cell,
+/// then by sheet), face vertices, edge vertices, then vertices that splits added. The triangles of
+/// a leaf come in the order of their grid edges, then those that splits added. The result is the
+/// same for every number of threads.
 ///
 /// # Errors
-/// When the run is cancelled, the result is too large, or the lattice reaches too far from the origin for
-/// the precision.
+/// When the run is cancelled, the result is too large, or the lattice reaches too far from the
+/// origin for the precision.
 ///
 /// # Panics
 /// When `crossings` does not belong to `signs`.
@@ -76,9 +76,11 @@ pub struct SlabContour {
     pub vertices: Range<usize>,
     /// The triangles that the slab owns. Some have vertices that the next slabs own.
     pub triangles: Range<usize>,
-    /// The number of the first triangle of each leaf of the signs, and the number of all at the end.
+    /// The number of the first triangle of each leaf of the signs, and the number of all at the
+    /// end.
     ///
-    /// No triangle reaches farther than [`MAX_TRIANGLE_REACH`](super::MAX_TRIANGLE_REACH) voxels beyond its leaf.
+    /// No triangle reaches farther than [`MAX_TRIANGLE_REACH`](super::MAX_TRIANGLE_REACH) voxels
+    /// beyond its leaf.
     pub firsts: Vec<usize>,
     /// Counts of what the slab owns.
     pub statistics: ContourStatistics,
@@ -86,13 +88,13 @@ pub struct SlabContour {
 
 /// Contours the part of the lattice that `settings.slab` names.
 ///
-/// Vertices and triangles of all slabs of a lattice, one slab after the other, are those of the whole
-/// contour: what a slab owns is the same in both. For that, `signs` must reach [`halo`] nodes beyond the
-/// slab.
+/// Vertices and triangles of all slabs of a lattice, one slab after the other, are those of the
+/// whole contour: what a slab owns is the same in both. For that, `signs` must reach [`halo`] nodes
+/// beyond the slab.
 ///
 /// # Errors
-/// When the run is cancelled, the result is too large, or the lattice reaches too far from the origin for
-/// the precision.
+/// When the run is cancelled, the result is too large, or the lattice reaches too far from the
+/// origin for the precision.
 ///
 /// # Panics
 /// When `crossings` does not belong to `signs`.
@@ -107,7 +109,7 @@ pub fn contour_slab(
     with_vertices(signs, crossings, lattice, surface, settings, run, |placed, phase| {
         let PlacedVertices { cells, faces, vertices, mut relocations, mut statistics } = placed;
         let Triangulation { mut mesh, far, statistics: polygons, .. } =
-            triangulate(&cells, &faces, vertices, settings.cut, phase)?;
+            triangulate(&cells, &faces, vertices, settings.diagonal_test, phase)?;
         statistics += polygons;
         if let Some(surface) = surface {
             add_far_vertices(&mut relocations, far);
@@ -121,7 +123,8 @@ pub fn contour_slab(
     })
 }
 
-/// Adds the feature vertices of polygons that are far from the surface to the relocations of their leaves.
+/// Adds the feature vertices of polygons that are far from the surface to the relocations of their
+/// leaves.
 fn add_far_vertices(relocations: &mut [Vec<Relocation>], far: Vec<(LeafId, Vec<u32>)>) {
     for (leaf, far) in far {
         let relocations = &mut relocations[leaf.0 as usize];
@@ -132,7 +135,8 @@ fn add_far_vertices(relocations: &mut [Vec<Relocation>], far: Vec<(LeafId, Vec<u
     }
 }
 
-/// Recovers features outside of their cells, and refines the mesh to a tolerance in voxels if there is one.
+/// Recovers features outside of their cells, and refines the mesh to a tolerance in voxels if there
+/// is one.
 fn optimize(
     cells: &Cells<'_>,
     surface: &dyn ImplicitSurface,
@@ -158,26 +162,26 @@ fn optimize(
     Ok(())
 }
 
-/// Returns the number of nodes beyond a slab that must be known, so that what the slab owns is as in a run
-/// over everything.
+/// Returns the number of nodes beyond a slab that must be known, so that what the slab owns is as
+/// in a run over everything.
 ///
 /// Where the signs are cut off, the contour has a border, and each pass over the mesh carries the
 /// difference further. The lower bit of a leaf's x is the first one of its colour (see
-/// `optimize/schedule`). So a leaf in the first half of a pass depends on the leaves beside it as they
-/// were before the pass, and a leaf in the second half on what the first half made of those. That is two
-/// leaves for each pass. Leaves at the border are not worked on, and the vertices of triangles at a plane
-/// lie up to two leaves beyond it.
+/// `optimize/schedule`). So a leaf in the first half of a pass depends on the leaves beside it as
+/// they were before the pass, and a leaf in the second half on what the first half made of those.
+/// That is two leaves for each pass. Leaves at the border are not worked on, and the vertices of
+/// triangles at a plane lie up to two leaves beyond it.
 pub fn halo(settings: &ContourSettings) -> i32 {
     let passes = RECOVERY_PASSES + settings.tolerance.map_or(0, |_| TOLERANCE_PASSES);
     LEAF_DIM * (BORDER_LEAVES + 2 * passes as i32 + 2)
 }
 
-/// Contours without a surface to sample, and returns the number of triangles around each crossed edge as
-/// well.
+/// Contours without a surface to sample, and returns the number of triangles around each crossed
+/// edge as well.
 ///
-/// These numbers come in the order of the edges, which is that of the triangles. Where crossings are
-/// missing, the triangles of all edges of a cell with such an edge are missing, too. Vertices without a
-/// triangle are left out.
+/// These numbers come in the order of the edges, which is that of the triangles. Where crossings
+/// are missing, the triangles of all edges of a cell with such an edge are missing, too. Vertices
+/// without a triangle are left out.
 ///
 /// # Errors
 /// As [`contour`].
@@ -194,7 +198,8 @@ pub(crate) fn contour_by_edge(
     let settings = ContourSettings { precision, ..ContourSettings::default() };
     with_vertices(signs, crossings, lattice, None, &settings, run, |placed, phase| {
         let PlacedVertices { cells, faces, vertices, .. } = placed;
-        let Triangulation { mesh, sizes, .. } = triangulate(&cells, &faces, vertices, settings.cut, phase)?;
+        let Triangulation { mesh, sizes, .. } =
+            triangulate(&cells, &faces, vertices, settings.diagonal_test, phase)?;
         let mut mesh = mesh.into_ordered().mesh;
         if crossings.numbers.is_partial() {
             mesh.drop_unreferenced_vertices(0);

@@ -1,8 +1,8 @@
-//! What happened during contouring.
+//! Counts of a contour.
 
 use std::ops::AddAssign;
 
-/// Counts of one contouring: the part `contour` of the statistics file.
+/// Counts of one contour: the part `contour` of the statistics file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ContourStatistics {
@@ -10,15 +10,16 @@ pub struct ContourStatistics {
     pub cells: u64,
     /// Cells with more than one sheet.
     pub several_sheets: u64,
-    /// Crossed grid edges, each with its polygon of four cell vertices and perhaps some face vertices.
+    /// Crossed grid edges, each with its polygon of four cell vertices and perhaps some face
+    /// vertices.
     pub quads: u64,
-    /// Polygons that were cut along diagonals.
+    /// Polygons that were split along diagonals.
     pub diagonal: u64,
-    /// Polygons that were split, wholly or in part, by a vertex on their grid edge.
+    /// Polygons that were split, wholly or in part, around a vertex on their grid edge.
     pub split: u64,
     /// Vertices on faces between cells.
     pub face_vertices: u64,
-    /// Cell vertices whose error function is least outside their cell or their walls.
+    /// Cell vertices whose minimiser is outside of their cell or their walls.
     pub clamped: u64,
     /// Vertices moved out of their cells to the crease or corner that they belong to.
     pub recovered: u64,
@@ -30,9 +31,11 @@ pub struct ContourStatistics {
     pub flipped: u64,
     /// Vertices added where the surface was too far away.
     pub refined: u64,
-    /// Times that adding vertices around one ended at its limit, with the surface still too far away.
+    /// Times that adding vertices around one ended at its limit, with the surface still too far
+    /// away.
     pub given_up: u64,
-    /// Triangles that are farther from the surface than the tolerance all the same; `None` without a tolerance.
+    /// Triangles that are farther from the surface than the tolerance all the same; `None` without
+    /// a tolerance.
     pub beyond_tolerance: Option<u64>,
     /// Vertices of the result.
     pub vertices: u64,

@@ -5,7 +5,7 @@ use super::PaperError;
 use super::lab::Lab;
 use super::models::PaperModel;
 use super::report::{Cell, Report};
-use crate::contour::{ContourSettings, CutMethod, cut_times};
+use crate::contour::{ContourSettings, DiagonalTest, time_diagonal_tests};
 use crate::edge::solve;
 
 /// A published row: offset, triangles in thousands and seconds of the method in \[8\], the same of
@@ -67,8 +67,9 @@ pub(super) fn measure(lab: &Lab) -> Result<Report, PaperError> {
             let (crossings, _) =
                 solve(&distance, lattice, r, &field.signs, field.numbers, &field.near, lab.run)?;
             let settings = ContourSettings::default();
-            let methods = [CutMethod::PolygonEdges, CutMethod::ConvexConcave];
-            let [ju, cc] = cut_times(&field.signs, &crossings, lattice, &settings, methods, lab.run)?;
+            let methods = [DiagonalTest::PolygonEdges, DiagonalTest::ConvexConcave];
+            let [ju, cc] =
+                time_diagonal_tests(&field.signs, &crossings, lattice, &settings, methods, lab.run)?;
             row.extend([Cell::Count(ju.triangles), Cell::Seconds(ju.seconds)]);
             row.extend([Cell::Count(cc.triangles), Cell::Seconds(cc.seconds)]);
             let ratio = round(ju.seconds / cc.seconds.max(f64::MIN_POSITIVE));

@@ -1,11 +1,12 @@
-//! The case table: how the contour runs through a cell, for every mask of inside corners.
+//! The case table: the sheets of a cell for every mask of inside corners.
 //!
-//! On each face the crossings are joined in pairs. A face with four crossings (an *ambiguous* one) can be
-//! joined in two ways, around its inside corners or around its outside corners; both cells must choose
-//! alike. The pairs of a cell close up to cycles, the *sheets*, and each sheet gets one vertex. \[LW11\]
-//! section VI leaves such cells open.
+//! On each face the crossings are joined in pairs. A face with four crossings is *ambiguous*: its
+//! crossings can be joined in two ways, around its inside corners or around its outside corners.
+//! Both cells at the face must choose alike. The pairs of a cell close up to cycles, the *sheets*,
+//! and each sheet gets one vertex. \[LW11\] section VI leaves such cells open.
 //!
-//! Of several sheets in a cell all but at most one are *caps*, which a plane (its *wall*) cuts off:
+//! Of several sheets in a cell all but at most one are *caps*. A plane, the *wall*, cuts off each
+//! cap:
 //!
 //! ```text
 //!   corner cap: the three crossings at a corner;   wall: through the corner's three neighbours
@@ -16,40 +17,40 @@
 use super::topology::{Corner, Edge, EdgeSet, Face};
 use std::sync::LazyLock;
 
-/// The most sheets that a cell can have: the four caps of a checkerboard.
+/// The most sheets of a cell: the four caps of a checkerboard.
 pub const MAX_SHEETS: usize = 4;
 
-/// How the ambiguous faces of a cell are joined: a bit per face, 0 around the inside corners, 1 around
-/// the outside corners. Bits of other faces mean nothing.
+/// The choice for each ambiguous face of a cell: a bit per face, 0 to join around the inside
+/// corners, 1 around the outside corners. Bits of other faces mean nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FaceChoice(u8);
 
 impl FaceChoice {
-    /// Every ambiguous face is joined around its inside corners, so that inside corners which touch
-    /// along a face's diagonal only come apart.
+    /// The choice of inside corners for every face, so that inside corners that touch along a
+    /// face's diagonal only come apart.
     pub const INSIDE_APART: FaceChoice = FaceChoice(0);
 
-    /// The choice with the given bits, bit i for the face with number i.
+    /// Makes a choice from bits, bit i for the face with number i.
     pub const fn from_bits(bits: u8) -> FaceChoice {
         FaceChoice(bits)
     }
 }
 
-/// What a sheet looks like.
+/// The shape of a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SheetKind {
-    /// No cap. At most one sheet of a cell with several sheets is of this kind.
+    /// No cap. A cell with several sheets has at most one of this kind.
     Main,
-    /// The three crossings at this corner.
+    /// A cap through the three crossings at this corner.
     CornerCap(Corner),
-    /// The four crossings at the ends of this edge.
+    /// A cap through the four crossings next to this edge.
     EdgeCap(Edge),
 }
 
 /// A cycle of pairs in a cell.
 #[derive(Clone, Copy, Debug)]
 pub struct Sheet {
-    /// The cell's edges whose crossings the sheet contains.
+    /// The edges whose crossings are in the sheet.
     pub edges: EdgeSet,
     /// Cap or main sheet.
     pub kind: SheetKind,
@@ -60,7 +61,7 @@ pub struct Sheet {
 pub struct Pair {
     /// The edges of the two crossings.
     pub edges: [Edge; 2],
-    /// The corner that both edges share, if they do.
+    /// The corner that both edges share, if there is one.
     pub around: Option<Corner>,
 }
 
@@ -73,6 +74,7 @@ pub struct Case {
     ambiguous: u8,
 }
 
+/// Marks edges that are not crossed.
 const NO_SHEET: u8 = u8::MAX;
 
 impl Case {
@@ -105,7 +107,7 @@ impl Case {
         Case { sheets, sheet_of, pairs, ambiguous }
     }
 
-    /// The sheets, ordered by their lowest edge.
+    /// Returns the sheets, ordered by their lowest edge.
     #[inline]
     pub fn sheets(&self) -> &[Sheet] {
         &self.sheets
@@ -117,7 +119,7 @@ impl Case {
         self.sheets.len() > 1
     }
 
-    /// The number of the sheet that contains the crossing of `edge`.
+    /// Returns the number of the sheet through the crossing of `edge`.
     ///
     /// # Panics
     /// When the edge is not crossed.
@@ -134,24 +136,25 @@ impl Case {
         self.ambiguous & face.bit() != 0
     }
 
-    /// The pairs of `face`: none, one, or two if it is ambiguous.
+    /// Returns the pairs of `face`: none, one, or two if it is ambiguous.
     #[inline]
     pub fn pairs(&self, face: Face) -> &[Pair] {
         &self.pairs[face.index()]
     }
 
-    /// The number of the pair of `face` that contains the crossing of `edge`.
+    /// Returns the number of the pair of `face` that contains the crossing of `edge`.
     pub fn pair_of(&self, face: Face, edge: Edge) -> Option<usize> {
         self.pairs(face).iter().position(|p| p.edges.contains(&edge))
     }
 
-    /// Whether a wall separates the sheet through the crossing of `edge` from the cell's other sheets.
+    /// Whether a wall separates the sheet through the crossing of `edge` from the cell's other
+    /// sheets.
     pub fn is_walled_cap(&self, edge: Edge) -> bool {
         self.has_several_sheets() && self.sheets[self.sheet_of(edge) as usize].kind != SheetKind::Main
     }
 }
 
-/// The pairs of one face.
+/// Returns the pairs of one face.
 fn face_pairs(face: Face, mask: u8, choice: FaceChoice) -> Vec<Pair> {
     let (corners, edges) = (face.corners(), face.edges());
     let inside = corners.map(|c| mask & c.bit() != 0);
@@ -186,21 +189,23 @@ fn kind(edges: EdgeSet) -> SheetKind {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Zeroable)]
 pub struct CaseId(u16);
 
-/// All masks of inside corners with all choices for their ambiguous faces.
+/// The cases of all masks of inside corners, with all choices for their ambiguous faces.
 #[derive(Debug)]
 pub struct CaseTable {
     rows: Vec<Case>,
-    /// Per mask its first row and its ambiguous faces; the choice, packed to those faces, counts from there.
+    /// The first row and the ambiguous faces of each mask. The choice, packed to those faces,
+    /// counts from that row.
     masks: [(u16, u8); 256],
 }
 
-/// The two masks without an edge of one sign. Their faces are always joined around the inside corners: a
-/// checkerboard with two opposite faces joined one way and four the other has two sheets of six crossings
-/// that no plane separates.
+/// The two masks without an edge of one sign.
+///
+/// Their faces are always joined around the inside corners. A checkerboard with two opposite faces
+/// joined one way and four the other has two sheets of six crossings that no plane separates.
 const CHECKERBOARDS: [u8; 2] = [0x69, 0x96];
 
 impl CaseTable {
-    /// The table, built at the first call.
+    /// Returns the table, built at the first call.
     pub fn get() -> &'static CaseTable {
         static TABLE: LazyLock<CaseTable> = LazyLock::new(CaseTable::build);
         &TABLE
@@ -221,14 +226,15 @@ impl CaseTable {
         CaseTable { rows, masks }
     }
 
-    /// The row of a mask of inside corners (bit i: corner i) with a choice for its ambiguous faces.
+    /// Returns the row of a mask of inside corners, bit i for corner i, with a choice for its
+    /// ambiguous faces.
     #[inline]
     pub fn id(&self, mask: u8, choice: FaceChoice) -> CaseId {
         let (first, faces) = self.masks[mask as usize];
         CaseId(first + if choice.0 & faces == 0 { 0 } else { u16::from(pack(choice.0, faces)) })
     }
 
-    /// The row with number `id`.
+    /// Returns the row with number `id`.
     #[inline]
     pub fn case(&self, id: CaseId) -> &Case {
         &self.rows[id.0 as usize]
@@ -237,14 +243,14 @@ impl CaseTable {
 
 /// Spreads the low bits of `packed` to the set bits of `to`.
 fn unpack(packed: u8, to: u8) -> u8 {
-    let places = (0..8).filter(|i| to >> i & 1 == 1);
-    places.enumerate().fold(0, |bits, (n, place)| bits | (packed >> n & 1) << place)
+    let set = (0..8).filter(|i| to >> i & 1 == 1);
+    set.enumerate().fold(0, |bits, (n, bit)| bits | (packed >> n & 1) << bit)
 }
 
-/// The inverse of [`unpack`].
+/// Gathers the bits of `bits` at the set bits of `from`: the inverse of [`unpack`].
 fn pack(bits: u8, from: u8) -> u8 {
-    let places = (0..8).filter(|i| from >> i & 1 == 1);
-    places.enumerate().fold(0, |packed, (n, place)| packed | (bits >> place & 1) << n)
+    let set = (0..8).filter(|i| from >> i & 1 == 1);
+    set.enumerate().fold(0, |packed, (n, bit)| packed | (bits >> bit & 1) << n)
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
-//! Corners, edges and faces of a lattice cell, and how they meet.
+//! Corners, edges and faces of a lattice cell, and their incidence.
 //!
 //! ```text
 //!        6 ------- 7        corner: bit 0 = x, bit 1 = y, bit 2 = z
-//!       /|        /|        edge:   4 axis + position of the two other coordinates
-//!      4 ------- 5 |        face:   2 axis + side
+//!       /|        /|        edge:   4 axis + positions on the two other axes
+//!      4 ------- 5 |        face:   2 axis + position
 //!   z  | |       | |
 //!   |  | 2 ------| 3        Around an axis the two other axes (u, v) follow cyclically, so that
 //!   | y|/        |/         (axis, u, v) is right-handed.
@@ -18,38 +18,38 @@ use crate::lattice::Axis;
 pub struct Corner(u8);
 
 impl Corner {
-    /// The eight corners.
+    /// Returns the eight corners.
     pub fn all() -> impl Iterator<Item = Corner> {
         (0..8).map(Corner)
     }
 
-    /// The bit of this corner in an 8-bit mask of corners.
+    /// Returns the bit of this corner in an 8-bit mask of corners.
     pub const fn bit(self) -> u8 {
         1 << self.0
     }
 
-    /// 0 on the lower side of the cell along `axis`, 1 on the upper side.
-    pub const fn side(self, axis: Axis) -> u8 {
+    /// Returns 0 on the lower face of the cell across `axis`, 1 on the upper face.
+    pub const fn position(self, axis: Axis) -> u8 {
         self.0 >> axis as u8 & 1
     }
 
-    /// The corner's offset from the cell's lowest corner, in nodes.
+    /// Returns the offset from the cell's lowest corner, in nodes.
     pub const fn offset(self) -> [i32; 3] {
         [(self.0 & 1) as i32, (self.0 >> 1 & 1) as i32, (self.0 >> 2 & 1) as i32]
     }
 
-    /// The neighbour along `axis`.
+    /// Returns the neighbour along `axis`.
     pub const fn across(self, axis: Axis) -> Corner {
         Corner(self.0 ^ 1 << axis as u8)
     }
 
-    /// The edge from this corner along `axis`.
+    /// Returns the edge from this corner along `axis`.
     pub const fn edge(self, axis: Axis) -> Edge {
         let (u, v) = axis.others();
-        Edge::new(axis, self.side(u), self.side(v))
+        Edge::new(axis, self.position(u), self.position(v))
     }
 
-    /// The three edges at this corner.
+    /// Returns the three edges at this corner.
     pub fn edges(self) -> EdgeSet {
         Axis::ALL.into_iter().map(|axis| self.edge(axis)).collect()
     }
@@ -60,23 +60,24 @@ impl Corner {
 pub struct Edge(u8);
 
 impl Edge {
-    /// The twelve edges.
+    /// Returns the twelve edges.
     pub fn all() -> impl Iterator<Item = Edge> {
         (0..12).map(Edge)
     }
 
-    /// The edge along `axis` at sides `u` and `v` (0 or 1) of the two other axes, in cyclic order.
+    /// Returns the edge along `axis` at positions `u` and `v`, 0 or 1, on the two other axes, in
+    /// cyclic order.
     pub const fn new(axis: Axis, u: u8, v: u8) -> Edge {
         Edge(4 * axis as u8 + (u & 1) + 2 * (v & 1))
     }
 
-    /// The edge's number, 0..12.
+    /// Returns the number of the edge, 0..12.
     #[inline]
     pub const fn index(self) -> usize {
         self.0 as usize
     }
 
-    /// The direction of the edge.
+    /// Returns the direction of the edge.
     #[inline]
     pub const fn axis(self) -> Axis {
         match self.0 >> 2 {
@@ -86,19 +87,19 @@ impl Edge {
         }
     }
 
-    /// The lower end.
+    /// Returns the lower end.
     #[inline]
     pub const fn low(self) -> Corner {
         let (u, v) = self.axis().others();
         Corner((self.0 & 1) << u as u8 | (self.0 >> 1 & 1) << v as u8)
     }
 
-    /// The upper end.
+    /// Returns the upper end.
     pub const fn high(self) -> Corner {
         self.low().across(self.axis())
     }
 
-    /// The four edges that share one end with this one.
+    /// Returns the four edges that share one end with this one.
     pub fn adjacent(self) -> EdgeSet {
         EdgeSet((self.low().edges().0 | self.high().edges().0) & !self.set().0)
     }
@@ -113,7 +114,7 @@ impl Edge {
 pub struct EdgeSet(u16);
 
 impl EdgeSet {
-    /// The number of edges in the set.
+    /// Returns the number of edges in the set.
     pub const fn len(self) -> usize {
         self.0.count_ones() as usize
     }
@@ -128,7 +129,7 @@ impl EdgeSet {
         self.0 |= edge.set().0;
     }
 
-    /// The edges of the set in ascending order.
+    /// Returns the edges of the set in ascending order.
     #[inline]
     pub fn iter(self) -> impl Iterator<Item = Edge> {
         let mut rest = self.0;
@@ -153,27 +154,27 @@ impl FromIterator<Edge> for EdgeSet {
 pub struct Face(u8);
 
 impl Face {
-    /// The six faces.
+    /// Returns the six faces.
     pub fn all() -> impl Iterator<Item = Face> {
         (0..6).map(Face)
     }
 
-    /// The face across `axis` on the upper side.
+    /// Returns the upper face across `axis`.
     pub const fn upper(axis: Axis) -> Face {
         Face(2 * axis as u8 + 1)
     }
 
-    /// The face's number, 0..6.
+    /// Returns the number of the face, 0..6.
     pub const fn index(self) -> usize {
         self.0 as usize
     }
 
-    /// The bit of this face in a mask of faces.
+    /// Returns the bit of this face in a mask of faces.
     pub const fn bit(self) -> u8 {
         1 << self.0
     }
 
-    /// The axis that the face is perpendicular to.
+    /// Returns the axis that the face is perpendicular to.
     pub const fn axis(self) -> Axis {
         match self.0 >> 1 {
             0 => Axis::X,
@@ -182,14 +183,15 @@ impl Face {
         }
     }
 
-    /// The corners in cyclic order, starting at the lowest: (0,0), (1,0), (1,1), (0,1) in (u, v).
+    /// Returns the corners in cyclic order from the lowest one: (0,0), (1,0), (1,1), (0,1) in (u,
+    /// v).
     pub fn corners(self) -> [Corner; 4] {
         let (u, v) = self.axis().others();
         let lowest = Corner((self.0 & 1) << self.axis() as u8);
         [lowest, lowest.across(u), lowest.across(u).across(v), lowest.across(v)]
     }
 
-    /// The edges in cyclic order: edge i joins corners i and i + 1.
+    /// Returns the edges in cyclic order: edge i joins corners i and i + 1.
     pub fn edges(self) -> [Edge; 4] {
         let (u, v) = self.axis().others();
         let [a, b, _, d] = self.corners();
@@ -207,7 +209,7 @@ mod tests {
         for edge in Edge::all() {
             assert_eq!(edge.low().edge(edge.axis()), edge);
             assert_eq!(edge.high().edge(edge.axis()), edge);
-            assert_eq!((edge.low().side(edge.axis()), edge.high().side(edge.axis())), (0, 1));
+            assert_eq!((edge.low().position(edge.axis()), edge.high().position(edge.axis())), (0, 1));
             assert_eq!(edge.adjacent().len(), 4);
             assert!(seen.insert((edge.low(), edge.high())));
         }
@@ -221,7 +223,7 @@ mod tests {
             for i in 0..4 {
                 let ends = [corners[i], corners[(i + 1) % 4]];
                 assert!(ends.contains(&edges[i].low()) && ends.contains(&edges[i].high()));
-                assert_eq!(corners[i].side(face.axis()), face.index() as u8 & 1);
+                assert_eq!(corners[i].position(face.axis()), face.index() as u8 & 1);
             }
         }
         assert_eq!(Face::upper(Axis::Y).index(), 3);

@@ -25,8 +25,8 @@ impl CurvatureBound {
 /// The most planes: those of four features.
 const MAX_CREASE_PLANES: usize = 4 * MAX_PLANES;
 
-/// The planes of the features near a polygon, whose lowest or highest envelope is the surface there, but for
-/// its curvature.
+/// The planes of the features near a polygon, whose lowest or highest envelope is the surface
+/// there, but for its curvature.
 #[derive(Clone, Copy, Debug)]
 pub struct CreasePlanes {
     /// Points with unit normals.
@@ -58,13 +58,13 @@ impl CreasePlanes {
         self.len == 0
     }
 
-    /// Returns the least distance that `p` can have from the surface, in model units, however much the
-    /// faces are curved.
+    /// Returns the least distance that `p` can have from the surface, in model units, however much
+    /// the faces are curved.
     pub fn distance(&self, p: [f64; 3]) -> f64 {
         let p = DVec3::from(p);
         let CurvatureBound { creases, curvature } = self.bound;
-        // Each plane gives a range of heights. These are the least and the largest of the lower ends, and of
-        // the upper ends.
+        // Each plane gives a range of heights. These are the least and the largest of the lower
+        // ends, and of the upper ends.
         let (mut least, mut largest) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for (at, normal) in &self.planes[..self.len] {
             let offset = p - *at;

@@ -1,10 +1,10 @@
 //! The position of a crease or a corner of the surface, from the tangent planes that a cell sees.
 //!
-//! The minimiser of a cell's error function is only as good as the cell's crossings. A third plane that
-//! crosses no edge of the cell is missing, and curved faces are taken as planes far from where they are
-//! needed. So the triangles of the crossings are followed: the surface of each is sampled where the planes
-//! meet, until that point converges. Then the surface itself is sampled there, in case that another
-//! triangle of it is nearer.
+//! The minimiser of a cell's error function is only as good as the cell's crossings. A third plane
+//! that crosses no edge of the cell is missing, and curved faces are taken as planes far from where
+//! they are needed. So the triangles of the crossings are followed: the surface of each is sampled
+//! where the planes meet, until that point converges. Then the surface itself is sampled there, in
+//! case that another triangle of it is nearer.
 //!
 //! ```text
 //!   planes at the crossings -> where they meet -> planes of the triangles there -> where these meet ... -> is it on the
@@ -21,12 +21,12 @@ use glam::DVec3;
 /// The tip of a wedge of 22 degrees is 2.5 voxels from where it is a voxel thick.
 pub const MAX_FEATURE_REACH: f64 = 2.5;
 
-/// The distance beside the crease at which its faces are sampled at first, in voxels. Later steps take
-/// twice the last movement, but no more than this.
+/// The distance beside the crease at which its faces are sampled at first, in voxels. Later steps
+/// take twice the last movement, but no more than this.
 const FIRST_OFFSET: f64 = 0.2;
 
-/// The least distance beside the crease at which its faces are sampled, in voxels, so that rounding does
-/// not decide which face answers.
+/// The least distance beside the crease at which its faces are sampled, in voxels, so that rounding
+/// does not decide which face answers.
 const LEAST_OFFSET: f64 = 1e-3;
 
 /// The most rounds of samples beside a crease. Flat faces need one, curved ones three.
@@ -34,12 +34,12 @@ const SAMPLE_ROUNDS: usize = 5;
 
 /// The most sets of triangles that are followed, with one sample each.
 ///
-/// Two of three features need one, one in thirty more than two. Where more are needed the faces have many
-/// triangles, and it is better to sample beside the crease.
+/// Two of three features need one, one in thirty more than two. Where more are needed the faces
+/// have many triangles, and it is better to sample beside the crease.
 const TRIANGLE_SETS: usize = 3;
 
-/// The most steps to the point in which the surfaces of triangles meet. Flat ones need one, curved ones
-/// three.
+/// The most steps to the point in which the surfaces of triangles meet. Flat ones need one, curved
+/// ones three.
 const TRIANGLE_STEPS: usize = 6;
 
 /// The distance at which steps along gradients end, in voxels.
@@ -53,8 +53,8 @@ const GRADIENT_STEPS: usize = 12;
 /// Convergence is quadratic, so the remaining error is far smaller.
 const SAMPLES_CONVERGED: f64 = 5e-3;
 
-/// The step length, in voxels, at which the search with known triangles stops. Such a step costs no sample
-/// of the surface, so the bound is tighter than [`SAMPLES_CONVERGED`].
+/// The step length, in voxels, at which the search with known triangles stops. Such a step costs no
+/// sample of the surface, so the bound is tighter than [`SAMPLES_CONVERGED`].
 const TRIANGLES_CONVERGED: f64 = 1e-3;
 
 /// The distance below which a point is on the surface, in voxels.
@@ -69,16 +69,17 @@ pub struct Feature {
     pub normals: Normals,
 }
 
-/// The spread of normals below which no feature is looked for: the second eigenvalue of the error function
-/// over the largest.
+/// The spread of normals below which no feature is looked for: the second eigenvalue of the error
+/// function over the largest.
 ///
 /// Five crossings on one face and one on another at 18 degrees to it have 0.013.
 pub const MIN_SPREAD: f64 = 0.002;
 
-/// Locates the feature that a sheet sees; `None` when it sees one face only, or the surface has no feature
-/// within reach of the cell.
+/// Locates the feature that a sheet sees; `None` when it sees one face only, or the surface has no
+/// feature within reach of the cell.
 ///
-/// `minimiser` is the least point of the sheet's error function, `mean` the mean of the sample points.
+/// `minimiser` is the least point of the sheet's error function, `mean` the mean of the sample
+/// points.
 pub fn locate_feature(
     probe: &mut SurfaceProbe<'_>,
     samples: &HermiteSamples,
@@ -93,7 +94,8 @@ pub fn locate_feature(
     Some(Feature { point, normals: planes.normals() })
 }
 
-/// Locates the feature around the origin between the faces of the surface that are near some points.
+/// Locates the feature around the origin between the faces of the surface that are near some
+/// points.
 pub fn feature_between(probe: &mut SurfaceProbe<'_>, points: impl Iterator<Item = DVec3>) -> Option<DVec3> {
     let mut samples = HermiteSamples::default();
     for p in points.take(12) {
@@ -107,8 +109,8 @@ pub fn feature_between(probe: &mut SurfaceProbe<'_>, points: impl Iterator<Item 
     converge(probe, seen, DVec3::ZERO).map(|(point, _)| point)
 }
 
-/// Steps along gradients from `from` to the surface, and returns the point there, or the nearest one on the
-/// way.
+/// Steps along gradients from `from` to the surface, and returns the point there, or the nearest
+/// one on the way.
 ///
 /// Between two faces the way goes to and fro, with shorter steps.
 pub fn project_to_surface(probe: &mut SurfaceProbe<'_>, from: DVec3) -> Option<DVec3> {
@@ -130,8 +132,8 @@ pub fn project_to_surface(probe: &mut SurfaceProbe<'_>, from: DVec3) -> Option<D
     is_within_reach(point).then_some(point)
 }
 
-/// Follows planes to the point of the surface in which they meet: by their triangles, or, where these lead
-/// away, by samples beside that point.
+/// Follows planes to the point of the surface in which they meet: by their triangles, or, where
+/// these lead away, by samples beside that point.
 fn converge(
     probe: &mut SurfaceProbe<'_>,
     planes: MeetingPlanes,
@@ -140,8 +142,8 @@ fn converge(
     by_triangles(probe, planes, mean).or_else(|| by_samples(probe, planes, mean))
 }
 
-/// Follows the triangles of the planes to the point in which their surfaces meet, and takes other triangles
-/// where the surface has nearer ones, until that point is on the surface.
+/// Follows the triangles of the planes to the point in which their surfaces meet, and takes other
+/// triangles where the surface has nearer ones, until that point is on the surface.
 fn by_triangles(
     probe: &mut SurfaceProbe<'_>,
     mut planes: MeetingPlanes,
@@ -163,7 +165,8 @@ fn by_triangles(
     None
 }
 
-/// Samples the surface beside the point in which the planes meet, until that point is on the surface.
+/// Samples the surface beside the point in which the planes meet, until that point is on the
+/// surface.
 fn by_samples(
     probe: &mut SurfaceProbe<'_>,
     mut planes: MeetingPlanes,
@@ -220,8 +223,8 @@ fn corner(
     (distance.abs() <= ON_SURFACE).then_some((point, planes))
 }
 
-/// Returns the point in which the surfaces of the planes' triangles meet, as near to `mean` as they do;
-/// `None` when it does not converge. The planes become the tangent planes there.
+/// Returns the point in which the surfaces of the planes' triangles meet, as near to `mean` as they
+/// do; `None` when it does not converge. The planes become the tangent planes there.
 fn meet_of_triangles(probe: &SurfaceProbe<'_>, planes: &mut MeetingPlanes, mean: DVec3) -> Option<DVec3> {
     let mut point = planes.meet(mean)?;
     for _ in 0..TRIANGLE_STEPS {

@@ -30,8 +30,8 @@ impl SurfaceProbe<'_> {
         TangentPlane { anchor: local + -distance * normal, normal, triangle: self.triangle }
     }
 
-    /// Returns the tangent plane of the surface of one triangle at the point that `local` reaches along the
-    /// gradient.
+    /// Returns the tangent plane of the surface of one triangle at the point that `local` reaches
+    /// along the gradient.
     pub fn tangent_plane_of(&self, triangle: u32, local: DVec3) -> TangentPlane {
         let sample = self.surface.sample_triangle(self.world(local), triangle);
         let normal = sample.gradient;

@@ -1,5 +1,5 @@
-//! Tangent planes of the surface: those at the crossings of a sheet, clustered by the faces of a crease, and
-//! the points in which planes meet.
+//! Tangent planes of the surface: those at the crossings of a sheet, clustered by the faces of a
+//! crease, and the points in which planes meet.
 
 use crate::geom::quadric::Qef;
 use glam::DVec3;
@@ -115,9 +115,9 @@ impl HermiteSamples {
     /// Returns the height of `point` above a smooth surface through the samples, in voxels, and the
     /// surface's normal there.
     ///
-    /// The height follows by the trapezoidal rule along the ways from the samples, with the mean normal at
-    /// the end. It is exact for quadratic functions, where the tangent planes themselves are off by their
-    /// curvature.
+    /// The height follows by the trapezoidal rule along the ways from the samples, with the mean
+    /// normal at the end. It is exact for quadratic functions, where the tangent planes themselves
+    /// are off by their curvature.
     pub fn height(&self, point: DVec3) -> (f64, DVec3) {
         let sum = self.slice().iter().fold(DVec3::ZERO, |sum, plane| sum + plane.normal);
         let length = sum.length();
@@ -136,8 +136,8 @@ impl HermiteSamples {
         planes.map(|p| p.normal.dot(point - p.anchor).abs()).fold(0.0, f64::max)
     }
 
-    /// Clusters the samples by the faces of a crease or corner, and returns one tangent plane for each face:
-    /// that of the sample nearest to `near`.
+    /// Clusters the samples by the faces of a crease or corner, and returns one tangent plane for
+    /// each face: that of the sample nearest to `near`.
     ///
     /// There are fewer than two planes when the samples lie on one face only.
     pub fn cluster_by_normal(&self, near: DVec3) -> MeetingPlanes {

@@ -14,8 +14,8 @@ pub fn push_range(moves: &mut Vec<(Range<usize>, usize)>, range: Range<usize>, t
 
 /// Moves ranges of a slice to their new starts. The ranges must be in order, before and after.
 pub fn shift_ranges<T: Copy>(all: &mut [T], moves: &[(Range<usize>, usize)]) {
-    // Ranges that go down are moved from the first one on, ranges that go up from the last one on. None
-    // lands on one that still waits, since the order stays.
+    // Ranges that go down are moved from the first one on, ranges that go up from the last one on.
+    // None lands on one that still waits, since the order stays.
     for (range, to) in moves.iter().filter(|(range, to)| *to < range.start) {
         all.copy_within(range.clone(), *to);
     }

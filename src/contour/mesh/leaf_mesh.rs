@@ -19,8 +19,8 @@ pub struct VertexRun {
 pub struct LeafMesh {
     /// The mesh. Removed triangles have the vertices [`GONE`].
     pub mesh: TriMesh,
-    /// The number of the first triangle of each leaf, and the number of all at the end. Added triangles
-    /// come after these.
+    /// The number of the first triangle of each leaf, and the number of all at the end. Added
+    /// triangles come after these.
     pub firsts: Vec<usize>,
     /// The grid edge that each triangle lies around: the number of its lower node in the leaf, and
     /// [`AXIS_STRIDE`] times its axis.
@@ -61,7 +61,8 @@ impl LeafMesh {
         self.firsts[n + 1] - self.firsts[n] - self.changed[n].len() + left
     }
 
-    /// Returns the numbers of those triangles of a leaf that were changed or added, and are not gone.
+    /// Returns the numbers of those triangles of a leaf that were changed or added, and are not
+    /// gone.
     ///
     /// No other triangle can be gone.
     pub fn changed_or_added(&self, leaf: LeafId) -> impl Iterator<Item = usize> + '_ {

@@ -1,8 +1,8 @@
 //! The finished mesh in the order of its leaves: a part of the lattice is one range of it.
 //!
-//! During construction a mesh has its vertices by kind, with added ones at the end. That order depends
-//! on the whole lattice. In the order of leaves, the vertices and triangles of consecutive leaves stand
-//! together, wherever the rest is made.
+//! During construction a mesh has its vertices by kind, with added ones at the end. That order
+//! depends on the whole lattice. In the order of leaves, the vertices and triangles of consecutive
+//! leaves stand together, wherever the rest is made.
 
 use super::compact::{push_range, shift_ranges, split_slices};
 use super::leaf_mesh::{LeafMesh, VertexRun};
@@ -91,7 +91,8 @@ impl LeafMesh {
 
 /// Returns the `count` vertices of `runs` that are left, by leaf.
 ///
-/// `starts` has the new number of the first vertex of each run, `removed_in` the removed vertices of a run.
+/// `starts` has the new number of the first vertex of each run, `removed_in` the removed vertices
+/// of a run.
 fn in_order<'a>(
     mut vertices: Vec<[f64; 3]>,
     count: usize,
@@ -99,9 +100,9 @@ fn in_order<'a>(
     starts: &[usize],
     removed_in: impl Fn(&VertexRun) -> &'a [u32],
 ) -> Vec<[f64; 3]> {
-    // The first runs, one for each leaf with cells, have nearly all vertices, and stay in order. They are
-    // shifted where they are, in one range as far as the shift is the same, and the others put between
-    // them.
+    // The first runs, one for each leaf with cells, have nearly all vertices, and stay in order.
+    // They are shifted where they are, in one range as far as the shift is the same, and the others
+    // put between them.
     let ascending = runs.windows(2).take_while(|pair| pair[0].leaf < pair[1].leaf).count() + 1;
     let (first_runs, others) = runs.split_at(ascending.min(runs.len()));
     let ranges = |run: &VertexRun| {

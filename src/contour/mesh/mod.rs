@@ -1,4 +1,5 @@
-//! The mesh by leaves: buffers of triangles, changes, and the order in which the mesh is handed out.
+//! The mesh by leaves: buffers of triangles, changes, and the order in which the mesh is handed
+//! out.
 
 mod changes;
 mod compact;

@@ -29,8 +29,8 @@ impl TriangleBuffer {
 
     /// Moves the parts together, or apart, so that each has room for its count of triangles.
     ///
-    /// Parts with more triangles than slots have no meaningful content then. Returns the start of each
-    /// part, and the number of all triangles.
+    /// Parts with more triangles than slots have no meaningful content then. Returns the start of
+    /// each part, and the number of all triangles.
     pub fn close_up(&mut self, slots: impl Iterator<Item = usize>, counts: &[usize]) -> Vec<usize> {
         let mut ends = vec![0; counts.len() + 1];
         let mut moves = Vec::new();

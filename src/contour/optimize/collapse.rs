@@ -1,5 +1,5 @@
-//! Edge collapses: slivers removed, triangles brought nearer to the surface, and vertices moved where another
-//! one is in the way.
+//! Edge collapses: slivers removed, triangles brought nearer to the surface, and vertices moved
+//! where another one is in the way.
 
 use super::optimizer::{PatchOptimizer, middle};
 use super::patch::PatchTriangle;
@@ -7,14 +7,15 @@ use crate::contour::feature::{CreasePlanes, FeatureVertex};
 use crate::geom::triangle::Triangle;
 use glam::DVec3;
 
-/// The distance between two corners, in voxels, below which they are one: two cells have located it, each
-/// with a rounding of its own.
+/// The distance between two corners, in voxels, below which they are one: two cells have located
+/// it, each with a rounding of its own.
 const SAME_CORNER: f64 = 1e-3;
 
 /// The height of a triangle, in voxels, below which it is a sliver.
 const SLIVER_HEIGHT: f64 = 0.05;
 
-/// The distance from the surface, in voxels, that triangles around a collapsed sliver may have in any case.
+/// The distance from the surface, in voxels, that triangles around a collapsed sliver may have in
+/// any case.
 const SLIVER_ERROR: f64 = 0.01;
 
 /// The distance from a corner, in voxels, within which another vertex can be moved there instead.
@@ -29,7 +30,8 @@ const COLLAPSE_GAIN: f64 = 0.5;
 /// The most collapses around one vertex. Each takes two triangles away.
 const MAX_COLLAPSES: u64 = 8;
 
-/// The distance from the triangles, in voxels, at which a removed vertex may leave the surface uncovered.
+/// The distance from the triangles, in voxels, at which a removed vertex may leave the surface
+/// uncovered.
 ///
 /// With more, corners that no feature remembers are cut off.
 const MAX_UNCOVERED: f64 = 2e-3;
@@ -51,8 +53,8 @@ struct EdgeEnds {
 }
 
 impl PatchOptimizer<'_> {
-    /// Relocates a vertex to `target`, or a substitute for it if the target is a corner. Returns the vertex
-    /// that is there now, and the way it came.
+    /// Relocates a vertex to `target`, or a substitute for it if the target is a corner. Returns
+    /// the vertex that is there now, and the way it came.
     pub fn relocate_or_substitute(&mut self, vertex: u32, target: [f64; 3]) -> Option<(u32, RelocationKind)> {
         if let Some(kind) = self.relocate_with_collapse(vertex, target) {
             return Some((vertex, kind));
@@ -67,8 +69,8 @@ impl PatchOptimizer<'_> {
         others.find_map(|(v, _)| Some((v, self.relocate_with_collapse(v, target)?)))
     }
 
-    /// Relocates a vertex to `target` if the triangles are no farther from the surface then: by a move, or by
-    /// collapsing an edge to a neighbour that is in the way.
+    /// Relocates a vertex to `target` if the triangles are no farther from the surface then: by a
+    /// move, or by collapsing an edge to a neighbour that is in the way.
     fn relocate_with_collapse(&mut self, vertex: u32, target: [f64; 3]) -> Option<RelocationKind> {
         let star = self.triangles_at(vertex);
         let limit = self.star_error(vertex, &star, f64::INFINITY).max(self.tolerance);
@@ -95,8 +97,9 @@ impl PatchOptimizer<'_> {
             .then_some(RelocationKind::Collapsed)
     }
 
-    /// Removes a vertex whose corner another one has taken, if it is far from the surface: by collapsing an
-    /// edge to a neighbour, else by moving it to the surface. Returns whether it was removed.
+    /// Removes a vertex whose corner another one has taken, if it is far from the surface: by
+    /// collapsing an edge to a neighbour, else by moving it to the surface. Returns whether it was
+    /// removed.
     pub fn remove_redundant(&mut self, vertex: u32) -> bool {
         let Some(from) = self.patch.position(vertex) else { return false };
         let error = self.error(from.into(), &CreasePlanes::NONE);
@@ -131,8 +134,8 @@ impl PatchOptimizer<'_> {
         self.features.get(vertex).is_some_and(|f| f.feature.normals.iter().all(|n| *n != [0.0; 3]))
     }
 
-    /// Collapses edges of the slivers at a vertex, as long as the triangles are no farther from the surface
-    /// then. Returns the number of collapses.
+    /// Collapses edges of the slivers at a vertex, as long as the triangles are no farther from the
+    /// surface then. Returns the number of collapses.
     pub fn collapse_slivers_around(&mut self, vertex: u32) -> u64 {
         let mut collapsed = 0;
         while collapsed < MAX_COLLAPSES {
@@ -174,15 +177,16 @@ impl PatchOptimizer<'_> {
         self.collapse_edge(n, &ends, SLIVER_ERROR, 1.0).is_some()
     }
 
-    /// Collapses an edge of a triangle that is far from the surface, if that brings it nearer. Returns the
-    /// vertex that remains.
+    /// Collapses an edge of a triangle that is far from the surface, if that brings it nearer.
+    /// Returns the vertex that remains.
     pub fn collapse_to_improve(&mut self, n: usize) -> Option<u32> {
         const ENDS: [[usize; 2]; 6] = [[0, 1], [1, 0], [1, 2], [2, 1], [2, 0], [0, 2]];
         self.collapse_edge(n, &ENDS.map(|[kept, removed]| EdgeEnds { kept, removed }), 0.0, COLLAPSE_GAIN)
     }
 
-    /// Collapses one of the given edges of a triangle, if the error of the triangles around is then at most
-    /// `good_error`, in voxels, or at most this share of what it is now. Returns the vertex that remains.
+    /// Collapses one of the given edges of a triangle, if the error of the triangles around is then
+    /// at most `good_error`, in voxels, or at most this share of what it is now. Returns the vertex
+    /// that remains.
     fn collapse_edge(&mut self, n: usize, ends: &[EdgeEnds], good_error: f64, share: f64) -> Option<u32> {
         let PatchTriangle { vertices, corners, .. } = *self.patch.triangle_at(n);
         let mut candidates = Vec::with_capacity(ends.len());
@@ -220,8 +224,8 @@ impl PatchOptimizer<'_> {
 
     /// Whether no corner is lost when a vertex is removed by an edge collapse to `target`.
     ///
-    /// That is so if the vertex stands for no corner, if the corner is at the target, or if another vertex
-    /// that stands for the corner is there.
+    /// That is so if the vertex stands for no corner, if the corner is at the target, or if another
+    /// vertex that stands for the corner is there.
     fn can_remove(&self, vertex: u32, target: [f64; 3]) -> bool {
         if !self.is_corner(vertex) {
             return true;
@@ -240,8 +244,8 @@ impl PatchOptimizer<'_> {
         })
     }
 
-    /// Returns the largest distance from the surface, in voxels, of the points of the triangles at a vertex
-    /// that are looked at. The middles of the edges opposite to the vertex are left out.
+    /// Returns the largest distance from the surface, in voxels, of the points of the triangles at
+    /// a vertex that are looked at. The middles of the edges opposite to the vertex are left out.
     ///
     /// Where the distance is more than `enough`, a lower bound above `enough` is returned.
     fn star_error(&mut self, vertex: u32, star: &[PatchTriangle], enough: f64) -> f64 {

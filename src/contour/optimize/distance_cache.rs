@@ -1,5 +1,5 @@
-//! Distances from the surface that were sampled before: changes of a patch look at the same middles of edges
-//! again and again.
+//! Distances from the surface that were sampled before: changes of a patch look at the same middles
+//! of edges again and again.
 
 use glam::DVec3;
 
@@ -17,8 +17,8 @@ impl DistanceCache {
         DistanceCache(vec![(DVec3::NAN, 0.0); SLOTS])
     }
 
-    /// Returns the distance of a point, by `sample` where it is not known: always the same one for the same
-    /// point.
+    /// Returns the distance of a point, by `sample` where it is not known: always the same one for
+    /// the same point.
     pub fn get(&mut self, p: DVec3, sample: impl FnOnce() -> f64) -> f64 {
         let slot = &mut self.0[slot(p)];
         if slot.0 != p {

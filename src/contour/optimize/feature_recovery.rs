@@ -1,13 +1,14 @@
 //! Creases and corners that lie outside of the cells that see them.
 //!
-//! The construction keeps every vertex in its cell, and blunts features there that pass beside it: the tip of
-//! a wedge that is thinner than a voxel, a corner between the nodes. When the mesh is finished, such vertices
-//! are relocated to their targets. Neighbours that are in the way are merged into them by edge collapses,
-//! edges are flipped along the crease, and triangles that are still far from the surface are split. Each edit
-//! is made only if the mesh stays embedded (see `patch`).
+//! The construction keeps every vertex in its cell, and blunts features there that pass beside it:
+//! the tip of a wedge that is thinner than a voxel, a corner between the nodes. When the mesh is
+//! finished, such vertices are relocated to their targets. Neighbours that are in the way are
+//! merged into them by edge collapses, edges are flipped along the crease, and triangles that are
+//! still far from the surface are split. Each edit is made only if the mesh stays embedded (see
+//! `patch`).
 //!
-//! All vertices are relocated first, then the rest is repaired: a split that is made before the vertices
-//! around it are in place is in their way later.
+//! All vertices are relocated first, then the rest is repaired: a split that is made before the
+//! vertices around it are in place is in their way later.
 
 use super::collapse::RelocationKind;
 use super::optimizer::{ErrorSource, PatchOptimizer};
@@ -20,13 +21,14 @@ use crate::contour::vertex::{Cells, Relocation};
 use crate::run::{Cancelled, RunSettings};
 use glam::DVec3;
 
-/// The distance from the surface, in voxels, above which triangles and edges around features are split.
+/// The distance from the surface, in voxels, above which triangles and edges around features are
+/// split.
 const TOLERANCE: f64 = 0.03;
 
 /// The most splits for each cell of a leaf in one pass.
 ///
-/// Models with a crease in every cell take 1.2 (armadillo at 64 voxels). Where more are asked for, the
-/// surface has its features at a scale that the lattice does not, and has no end of them.
+/// Models with a crease in every cell take 1.2 (armadillo at 64 voxels). Where more are asked for,
+/// the surface has its features at a scale that the lattice does not, and has no end of them.
 const SPLITS_PER_CELL: usize = 4;
 
 /// The shares of the way to its target that a vertex tries if it cannot go all of it.
@@ -60,8 +62,8 @@ enum Pass {
 
 /// The passes over the mesh.
 ///
-/// A leaf that is far from a neighbour's changes in one pass can be beside them in the next, so the rest is
-/// repaired twice. A third time would gain a tenth of that.
+/// A leaf that is far from a neighbour's changes in one pass can be beside them in the next, so the
+/// rest is repaired twice. A third time would gain a tenth of that.
 const PASSES: [Pass; 3] = [Pass::Relocate, Pass::Repair, Pass::Repair];
 
 /// The number of passes over the mesh.
@@ -74,8 +76,8 @@ struct Pending {
     target: [f64; 3],
 }
 
-/// Moves vertices of the finished mesh to their targets, and brings the mesh around them closer to the
-/// surface. `relocations` has a list for each leaf.
+/// Moves vertices of the finished mesh to their targets, and brings the mesh around them closer to
+/// the surface. `relocations` has a list for each leaf.
 ///
 /// # Errors
 /// When the run is cancelled.
@@ -129,7 +131,8 @@ pub fn recover(
 }
 
 impl PatchOptimizer<'_> {
-    /// Runs one pass over the relocations of a leaf. Returns counts, and whether something is left to do.
+    /// Runs one pass over the relocations of a leaf. Returns counts, and whether something is left
+    /// to do.
     fn run_pass(&mut self, relocations: &[Relocation], pass: Pass) -> (Recovered, bool) {
         let mut recovered = Recovered::default();
         let mut pending = self.pending(relocations);
@@ -163,7 +166,8 @@ impl PatchOptimizer<'_> {
         (recovered, is_pending)
     }
 
-    /// Returns the vertices that are not at their targets: corners first, since creases can go around them.
+    /// Returns the vertices that are not at their targets: corners first, since creases can go
+    /// around them.
     fn pending(&mut self, relocations: &[Relocation]) -> Vec<Pending> {
         let mut pending: Vec<Pending> = Vec::with_capacity(relocations.len());
         for &Relocation { vertex, target } in relocations {
@@ -211,8 +215,8 @@ impl PatchOptimizer<'_> {
         });
     }
 
-    /// Moves a vertex that cannot have its target as near to it as it can come, or to another point of the
-    /// surface, if that brings it closer to the surface.
+    /// Moves a vertex that cannot have its target as near to it as it can come, or to another point
+    /// of the surface, if that brings it closer to the surface.
     ///
     /// A vertex whose target is on the line between two others can nearly have it.
     fn move_part_way(&mut self, vertex: u32, target: [f64; 3]) {

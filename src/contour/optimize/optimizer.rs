@@ -19,7 +19,8 @@ const FLAT: f64 = 0.996;
 /// The distance of an edge's middle from the surface, in voxels, below which the edge stays.
 const GOOD_EDGE: f64 = 0.01;
 
-/// The distance of a point from the crease planes nearby, in voxels, below which the surface is not sampled.
+/// The distance of a point from the crease planes nearby, in voxels, below which the surface is not
+/// sampled.
 const SURE: f64 = 0.01;
 
 /// The factor by which a flip must bring the middle of the edge nearer.
@@ -28,7 +29,8 @@ const FLIP_GAIN: f64 = 0.5;
 /// The distance of a vertex from a point, in voxels, below which the point is taken.
 const TAKEN: f64 = 0.01;
 
-/// The shares of the way to its target that the vertex of a split tries: a triangle can be in the way.
+/// The shares of the way to its target that the vertex of a split tries: a triangle can be in the
+/// way.
 const SHARES: [f64; 4] = [1.0, 0.75, 0.5, 0.25];
 
 /// The factor by which a part of the way must bring the vertex of a split nearer.
@@ -39,7 +41,8 @@ const PART_GAIN: f64 = 0.8;
 /// Where the surface jumps, splits do not bring the mesh nearer, and would go on without end.
 const MAX_SPLITS: u64 = 12;
 
-/// The limit of flips around one vertex. Every flip brings the mesh nearer; the limit is for rounding.
+/// The limit of flips around one vertex. Every flip brings the mesh nearer; the limit is for
+/// rounding.
 const MAX_FLIPS: u64 = 8;
 
 /// Whether the crease planes nearby can decide that a point is near the surface.
@@ -71,8 +74,8 @@ pub struct PatchOptimizer<'a> {
     pub features: &'a FeatureMap,
     /// The vertices of cells in which the sign jumps.
     pub jumps: &'a VertexSet,
-    /// The distance from the surface, in voxels, above which triangles and edges are split, and vertices
-    /// moved.
+    /// The distance from the surface, in voxels, above which triangles and edges are split, and
+    /// vertices moved.
     pub tolerance: f64,
     /// The number of splits that may still be made.
     pub splits_left: u64,
@@ -117,8 +120,8 @@ impl<'a> PatchOptimizer<'a> {
         SurfaceProbe { surface: self.surface, origin, voxel: self.voxel(), triangle: self.hint }
     }
 
-    /// Returns the rounded point of the surface near a vertex that is far from the surface; `None` for other
-    /// vertices.
+    /// Returns the rounded point of the surface near a vertex that is far from the surface; `None`
+    /// for other vertices.
     pub fn surface_target(&mut self, vertex: u32) -> Option<[f64; 3]> {
         let origin = DVec3::from(self.patch.position(vertex)?);
         let mut probe = self.probe(origin);
@@ -128,8 +131,8 @@ impl<'a> PatchOptimizer<'a> {
         target.map(|p| self.lattice.round(origin + self.voxel() * p))
     }
 
-    /// Flips edges at and around a vertex that cut through the solid or the air beside a crease. Returns the
-    /// number of flips.
+    /// Flips edges at and around a vertex that cut through the solid or the air beside a crease.
+    /// Returns the number of flips.
     pub fn flip_around(&mut self, vertex: u32) -> u64 {
         let mut flipped = 0;
         while flipped < MAX_FLIPS {
@@ -154,8 +157,8 @@ impl<'a> PatchOptimizer<'a> {
         (then < FLIP_GAIN * now && self.patch.try_flip(edge)).then_some(())
     }
 
-    /// Splits the triangles at a vertex, and their edges, where they are far from the surface, then the
-    /// triangles at the vertices that this adds. Returns the number of splits.
+    /// Splits the triangles at a vertex, and their edges, where they are far from the surface, then
+    /// the triangles at the vertices that this adds. Returns the number of splits.
     pub fn split_around(&mut self, vertex: u32) -> u64 {
         let mut split = 0;
         let mut vertices = vec![vertex];
@@ -185,8 +188,8 @@ impl<'a> PatchOptimizer<'a> {
         self.patch.star(vertex).into_iter().any(|n| self.worst(n).is_some())
     }
 
-    /// Returns the point at which a triangle is farthest from the surface, if that is beyond the tolerance
-    /// and the sign does not jump there.
+    /// Returns the point at which a triangle is farthest from the surface, if that is beyond the
+    /// tolerance and the sign does not jump there.
     pub fn worst(&mut self, n: usize) -> Option<FarthestPoint> {
         if self.jumps.contains_any(self.patch.triangle_at(n).vertices) {
             return None;
@@ -199,8 +202,8 @@ impl<'a> PatchOptimizer<'a> {
         self.farthest(n).is_some_and(|farthest| farthest.error > self.tolerance)
     }
 
-    /// Returns the farthest of the points of a triangle that are looked at: the middles of its edges, and its
-    /// centre.
+    /// Returns the farthest of the points of a triangle that are looked at: the middles of its
+    /// edges, and its centre.
     fn farthest(&mut self, n: usize) -> Option<FarthestPoint> {
         let t = *self.patch.triangle_at(n);
         let [a, b, c] = t.corners.map(DVec3::from);
@@ -212,8 +215,9 @@ impl<'a> PatchOptimizer<'a> {
         Some(FarthestPoint { edge, point: points[worst], error: errors[worst] })
     }
 
-    /// Splits a triangle, or an edge of it, where it is farthest from the surface, or collapses an edge of it
-    /// if that is not possible. Returns the vertex around which the triangles have changed.
+    /// Splits a triangle, or an edge of it, where it is farthest from the surface, or collapses an
+    /// edge of it if that is not possible. Returns the vertex around which the triangles have
+    /// changed.
     pub fn improve(&mut self, n: usize, farthest: FarthestPoint) -> Option<u32> {
         self.split(n, farthest).or_else(|| self.collapse_to_improve(n))
     }
@@ -251,8 +255,8 @@ impl<'a> PatchOptimizer<'a> {
         None
     }
 
-    /// Returns points of the surface near `from`: the crease or corner between the smooth faces that are seen
-    /// from there towards the points around, and the point that gradients lead to.
+    /// Returns points of the surface near `from`: the crease or corner between the smooth faces
+    /// that are seen from there towards the points around, and the point that gradients lead to.
     fn split_targets(&mut self, from: DVec3, around: &[[f64; 3]]) -> [Option<DVec3>; 2] {
         let voxel = self.voxel();
         let mut probe = self.probe(from);
@@ -276,8 +280,8 @@ impl<'a> PatchOptimizer<'a> {
         self.lattice.voxel()
     }
 
-    /// Returns the distance of a point from the surface, in voxels; 0 where it is less than [`SURE`] by the
-    /// crease planes near the point.
+    /// Returns the distance of a point from the surface, in voxels; 0 where it is less than
+    /// [`SURE`] by the crease planes near the point.
     pub fn error(&mut self, p: DVec3, planes: &CreasePlanes) -> f64 {
         if !planes.is_empty() && planes.distance(p.to_array()) < SURE * self.voxel() {
             return 0.0;

@@ -14,8 +14,9 @@ use rayon::prelude::*;
 
 /// The reach of the triangles at the vertices of a leaf beyond the leaf, in voxels.
 ///
-/// The other vertices of these triangles lie in the next cells, or up to [`MAX_FEATURE_REACH`] outside of those. Two
-/// leaves with another one between them are 8 voxels apart, more than twice this.
+/// The other vertices of these triangles lie in the next cells, or up to [`MAX_FEATURE_REACH`]
+/// outside of those. Two leaves with another one between them are 8 voxels apart, more than twice
+/// this.
 const LEAF_MARGIN: f64 = 1.0 + MAX_FEATURE_REACH;
 
 const _: () =
@@ -23,15 +24,17 @@ const _: () =
 
 /// The width of a patch around the positions that its vertices leave and go to, in voxels.
 ///
-/// That is the reach of the triangles of a vertex whose neighbours are in their cells, with a little for
-/// neighbours that are not. Changes that need more are refused. With [`LEAF_MARGIN`] four vertices of
-/// 1,460 more find room (armadillo +2% at 512), in patches of twice as many triangles.
+/// That is the reach of the triangles of a vertex whose neighbours are in their cells, with a
+/// little for neighbours that are not. Changes that need more are refused. With [`LEAF_MARGIN`]
+/// four vertices of 1,460 more find room (armadillo +2% at 512), in patches of twice as many
+/// triangles.
 const PATCH_MARGIN: f64 = 2.25;
 
-/// The farthest that a changed triangle may reach beyond its leaf, in voxels, whichever leaf changes it.
+/// The farthest that a changed triangle may reach beyond its leaf, in voxels, whichever leaf
+/// changes it.
 ///
-/// The patch of a leaf is made of the triangles of this leaf and of its 26 neighbours. Triangles of a leaf
-/// farther away must not reach into it.
+/// The patch of a leaf is made of the triangles of this leaf and of its 26 neighbours. Triangles of
+/// a leaf farther away must not reach into it.
 pub const MAX_TRIANGLE_REACH: f64 = 4.0;
 
 const _: () = assert!(MAX_TRIANGLE_REACH >= LEAF_MARGIN, "a leaf must be able to change its own triangles");
@@ -40,19 +43,19 @@ const _: () = assert!(
     "a patch must hold all triangles in its bounds"
 );
 
-/// The most leaves in one rayon task. A patch takes a hundred times as long as a leaf in other loops, and
-/// a round waits for the last one.
+/// The most leaves in one rayon task. A patch takes a hundred times as long as a leaf in other
+/// loops, and a round waits for the last one.
 const MAX_TASK_LEN: usize = 1;
 
-/// The width, in leaves, of the margin that is left as it is where the field is cut off: there the mesh
-/// has a border.
+/// The width, in leaves, of the margin that is left as it is where the field is cut off: there the
+/// mesh has a border.
 pub const BORDER_LEAVES: i32 = 2;
 
 /// Edits a mesh leaf by leaf, in parallel, with the same result for every number of threads.
 ///
-/// For each of `leaves` for which `region` returns bounds, `edit` receives the patch of triangles around
-/// them and returns it changed. The patch reaches as far beyond the bounds as a moved vertex can pull its
-/// triangles. `collect` receives the results by colour, then by leaf.
+/// For each of `leaves` for which `region` returns bounds, `edit` receives the patch of triangles
+/// around them and returns it changed. The patch reaches as far beyond the bounds as a moved vertex
+/// can pull its triangles. `collect` receives the results by colour, then by leaf.
 ///
 /// # Errors
 /// When the run is cancelled.
@@ -120,7 +123,8 @@ fn patch_around(mesh: &LeafMesh, context: &CellContext<'_>, leaf: LeafId, region
                 .all(|n| found.contains(&n) || !Bounds::around(mesh.corners(n)).meets(&bounds)),
             "a triangle left its grid edge and was missed"
         );
-        // All corners before any of them is looked at: they come from far in memory, side by side that way.
+        // All corners before any of them is looked at: they come from far in memory, side by side
+        // that way.
         corners.resize(found.len(), [[0.0; 3]; 3]);
         for (corners, &n) in corners.iter_mut().zip(&found) {
             for (corner, vertex) in corners.iter_mut().zip(mesh.mesh.triangles[n]) {
@@ -161,7 +165,8 @@ fn triangles_are_near_leaves(mesh: &LeafMesh, context: &CellContext<'_>) -> bool
 
 /// The nodes of a leaf whose grid edges may have triangles in a box.
 ///
-/// Looking at a node is far cheaper than at the corners of its triangles, which lie anywhere in memory.
+/// Looking at a node is far cheaper than at the corners of its triangles, which lie anywhere in
+/// memory.
 struct NodesNear {
     /// The first node of the first x layer in question.
     first: u16,
@@ -174,8 +179,8 @@ struct NodesNear {
 impl NodesNear {
     /// Finds the nodes of the leaf at `origin` for a box.
     fn new(origin: Ijk, voxel: f64, bounds: &Bounds) -> NodesNear {
-        // The triangles around an edge lie in the cells around it: within a voxel of its lower node along
-        // each axis, but for the rounding of coordinates, an eighth of a voxel at most.
+        // The triangles around an edge lie in the cells around it: within a voxel of its lower node
+        // along each axis, but for the rounding of coordinates, an eighth of a voxel at most.
         const WITHIN: f64 = 1.25;
         let [x, y, z] = std::array::from_fn(|a| {
             let local = |x: f64| x / voxel - f64::from(origin.0[a]);
@@ -212,8 +217,8 @@ fn around(origin: Ijk, voxel: f64, margin: f64) -> Bounds {
     Bounds { lo, hi: lo.map(|x| x + voxel * f64::from(LEAF_DIM)) }.grown(margin * voxel)
 }
 
-/// Returns the colour of the leaf at `origin`, 0 to 7. Leaves of one colour have another leaf between
-/// them along some axis.
+/// Returns the colour of the leaf at `origin`, 0 to 7. Leaves of one colour have another leaf
+/// between them along some axis.
 fn leaf_colour(origin: [i32; 3]) -> usize {
     let [x, y, z] = origin.map(|x| (x.div_euclid(LEAF_DIM) & 1) as usize);
     4 * x + 2 * y + z

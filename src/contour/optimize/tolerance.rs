@@ -1,8 +1,9 @@
 //! The mesh refined until it is within a tolerance of the surface.
 //!
-//! Triangles are looked at in the middle, in the middles of their edges and at their vertices. Where a
-//! triangle is too far from the surface, it is split at the worst point, with a new vertex on the surface or
-//! on its crease, as often as it takes. Each edit is made only if the mesh stays embedded (see `patch`).
+//! Triangles are looked at in the middle, in the middles of their edges and at their vertices.
+//! Where a triangle is too far from the surface, it is split at the worst point, with a new vertex
+//! on the surface or on its crease, as often as it takes. Each edit is made only if the mesh stays
+//! embedded (see `patch`).
 
 use super::optimizer::{ErrorSource, PatchOptimizer};
 use super::patch::Bounds;
@@ -15,15 +16,16 @@ use crate::run::{Cancelled, RunSettings};
 
 /// The most passes that split.
 ///
-/// Each halves the edges that are too far, so that the error of smooth parts shrinks to a quarter: to 1/256
-/// in all. More passes would let a tolerance that is too small multiply the mesh without end.
+/// Each halves the edges that are too far, so that the error of smooth parts shrinks to a quarter:
+/// to 1/256 in all. More passes would let a tolerance that is too small multiply the mesh without
+/// end.
 const SPLIT_PASSES: u32 = 4;
 
 /// The number of all passes, with the one that only counts.
 pub const TOLERANCE_PASSES: usize = SPLIT_PASSES as usize + 1;
 
-/// The share of the tolerance that the points that are looked at must meet. Between them the error can be
-/// larger.
+/// The share of the tolerance that the points that are looked at must meet. Between them the error
+/// can be larger.
 const TOLERANCE_SHARE: f64 = 0.8;
 
 /// Counts of a refinement.
@@ -37,8 +39,8 @@ pub struct Refined {
     pub beyond: u64,
 }
 
-/// Refines the mesh until no triangle is farther from the surface than `tolerance`, in voxels, or nothing
-/// changes.
+/// Refines the mesh until no triangle is farther from the surface than `tolerance`, in voxels, or
+/// nothing changes.
 ///
 /// # Errors
 /// When the run is cancelled.
@@ -103,8 +105,8 @@ impl PatchOptimizer<'_> {
         Refined { beyond, ..Refined::default() }
     }
 
-    /// Moves the vertices of the triangles with the given numbers of the mesh to the surface, and splits the
-    /// triangles once, where they are too far from it.
+    /// Moves the vertices of the triangles with the given numbers of the mesh to the surface, and
+    /// splits the triangles once, where they are too far from it.
     fn refine(&mut self, numbers: &[usize]) -> Refined {
         let mut refined = Refined::default();
         let own = self.patch.numbered(numbers);

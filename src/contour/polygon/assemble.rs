@@ -1,12 +1,12 @@
-//! The polygons around all crossed edges, cut into triangles and collected to a mesh.
+//! The mesh of all polygons: each is split into triangles, and these are collected by leaf.
 
 use super::edge_polygon::{EdgePolygon, for_polygons, on_axis};
-use super::triangulate::{Cut, EDGE_VERTEX, Fit, polygonize};
+use super::triangulate::{EDGE_VERTEX, Fit, Split, triangulate_polygon};
 use crate::band::LeafId;
 use crate::contour::error::{ContourError, TooManyVertices};
 use crate::contour::feature::SurfaceProbe;
 use crate::contour::mesh::{AXIS_STRIDE, LeafMesh, TriangleBuffer, TriangleSlots, VertexRun, split_slices};
-use crate::contour::settings::CutMethod;
+use crate::contour::settings::DiagonalTest;
 use crate::contour::statistics::ContourStatistics;
 use crate::contour::vertex::{Cells, FaceVertices, is_missing};
 use crate::mesh::TriMesh;
@@ -14,42 +14,45 @@ use crate::run::{Cancelled, PhaseGuard, SHARE};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// What is found of the polygons around the crossed edges that start in one leaf, besides their triangles.
+/// The results for the polygons around the crossed edges that start in one leaf, besides the
+/// triangles in their slots.
 #[derive(Debug, Default)]
 struct LeafOutput {
-    /// How many triangles there are.
+    /// The number of triangles.
     count: usize,
-    /// All of them, where they are more than their slots. Few leaves have that, and there is an output for each leaf.
+    /// All triangles, where they are more than the slots. A box, since few leaves have that and
+    /// each has an output.
     overflow: Option<Box<TriangleBuffer>>,
     edge_vertices: Vec<[f64; 3]>,
     /// Feature vertices of polygons that are far from the surface.
     far: Vec<u32>,
-    /// Polygons.
+    /// The number of polygons.
     quads: u32,
 }
 
-/// The mesh, and what is known of its parts.
+/// The mesh, with facts of its polygons.
 #[derive(Debug)]
 pub struct Triangulation {
     /// The mesh.
     pub mesh: LeafMesh,
-    /// The feature vertices of polygons that are far from the surface, of the leaves that have some.
+    /// The feature vertices of polygons that are far from the surface, by leaf, of the leaves that
+    /// have some.
     pub far: Vec<(LeafId, Vec<u32>)>,
     /// The number of triangles around each crossed edge.
     pub sizes: Vec<u8>,
-    /// Counts.
+    /// Counts of polygons and of their vertices.
     pub statistics: ContourStatistics,
 }
 
-/// The mesh over the cell and face vertices `vertices`, to which edge vertices are added.
+/// Makes the mesh over the cell and face vertices `vertices`, to which edge vertices are added.
 ///
 /// # Errors
-/// More than 2^32 - 1 vertices, or cancellation.
+/// When there are more than 2^32 - 1 vertices, or the run is cancelled.
 pub fn triangulate(
     cells: &Cells<'_>,
     faces: &FaceVertices,
     mut vertices: Vec<[f64; 3]>,
-    method: CutMethod,
+    test: DiagonalTest,
     phase: &PhaseGuard<'_>,
 ) -> Result<Triangulation, ContourError> {
     let leaves: Vec<LeafId> = cells.context.crossings.numbers.leaves().collect();
@@ -68,17 +71,17 @@ pub fn triangulate(
         .with_max_len(SHARE)
         .map(|(&leaf, ((corners, edges), sizes))| {
             phase.advance(1)?;
-            Ok(in_leaf(cells, faces, &vertices, method, leaf, TriangleSlots::new(corners, edges), sizes))
+            Ok(in_leaf(cells, faces, &vertices, test, leaf, TriangleSlots::new(corners, edges), sizes))
         })
         .collect::<Result<_, Cancelled>>()?;
 
-    let hubs: usize = outputs.iter().map(|o| o.edge_vertices.len()).sum();
+    let edge_vertices: usize = outputs.iter().map(|o| o.edge_vertices.len()).sum();
     // The number that stands for an edge vertex must stay free.
-    if (vertices.len() + hubs) as u64 >= u64::from(EDGE_VERTEX) {
+    if (vertices.len() + edge_vertices) as u64 >= u64::from(EDGE_VERTEX) {
         return Err(TooManyVertices.into());
     }
     let shared = vertices.len() as u32;
-    vertices.reserve_exact(hubs);
+    vertices.reserve_exact(edge_vertices);
     let counts: Vec<usize> = outputs.iter().map(|output| output.count).collect();
     let starts = triangles.close_up(slots(), &counts);
     let all = || cells.context.signs.leaves();
@@ -129,16 +132,17 @@ pub fn triangulate(
     Ok(Triangulation { mesh, far, sizes, statistics })
 }
 
-/// A range of numbers, which fit.
+/// Returns a range of numbers that are known to fit.
 fn as_u32(range: std::ops::Range<usize>) -> std::ops::Range<u32> {
     range.start as u32..range.end as u32
 }
 
+/// Splits the polygons around the crossed edges that start in one leaf.
 fn in_leaf(
     cells: &Cells<'_>,
     faces: &FaceVertices,
     vertices: &[[f64; 3]],
-    method: CutMethod,
+    test: DiagonalTest,
     leaf: LeafId,
     mut slots: TriangleSlots<'_>,
     sizes: &mut [u8],
@@ -159,14 +163,16 @@ fn in_leaf(
                 return;
             }
             triangles.clear();
-            let cut = polygonize(polygon, &envelope, &fit, method, &mut triangles);
-            let hub = || lattice.between_walls(node, on_axis(along.0, lattice.clamp_to_edge(along.1)));
+            let split = triangulate_polygon(polygon, &envelope, &fit, test, &mut triangles);
+            let edge_vertex =
+                || lattice.between_walls(node, on_axis(along.0, lattice.clamp_to_edge(along.1)));
             if let Some(surface) = cells.context.surface
                 && !is_jump
                 && !fit.crease_planes.is_empty()
             {
                 let corners = polygon.corners();
-                let position = |v| corners.iter().find(|c| c.vertex == v).map_or_else(hub, |c| c.position);
+                let position =
+                    |v| corners.iter().find(|c| c.vertex == v).map_or_else(edge_vertex, |c| c.position);
                 let mut probe = SurfaceProbe { surface, origin: fit.point, voxel: lattice.voxel(), triangle };
                 let far = is_far(&triangles, position, &fit, &mut probe);
                 output.far.extend(corners.iter().filter_map(|corner| {
@@ -175,15 +181,15 @@ fn in_leaf(
                     (is_far && !cells.jumps.contains(corner.vertex)).then_some(corner.vertex)
                 }));
             }
-            if cut == Cut::Split {
-                // From the number of cell and face vertices on, they count the leaf's edge vertices for now.
+            if split == Split::Fan {
+                // The leaf's edge vertices are numbered on from the cell and face vertices for now.
                 let vertex = (vertices.len() + output.edge_vertices.len()) as u32;
                 for corner in triangles.as_flattened_mut() {
                     if *corner == EDGE_VERTEX {
                         *corner = vertex;
                     }
                 }
-                output.edge_vertices.push(hub());
+                output.edge_vertices.push(edge_vertex());
             }
             slots.extend(&triangles, number + AXIS_STRIDE * along.0 as u16);
             if let Some(size) = size {

@@ -1,4 +1,5 @@
-//! The polygon around each crossed grid edge: the vertices of the four cells around it, and face vertices between them.
+//! The polygon around each crossed grid edge: the vertices of the four cells, and face vertices
+//! between them.
 
 use super::envelope::Envelope;
 use super::leaf_cells::LeafCells;
@@ -11,7 +12,7 @@ use crate::edge::EdgeId;
 use crate::lattice::{Axis, Ijk, LEAF_DIM, bits};
 use glam::DVec3;
 
-/// The polygon around a crossed edge, and what decides how it is cut.
+/// The polygon around a crossed edge, and all that decides how it is split.
 #[derive(Clone, Copy, Debug)]
 pub struct EdgePolygon<'a> {
     /// The cell and face vertices around the edge.
@@ -24,15 +25,16 @@ pub struct EdgePolygon<'a> {
     pub triangle: u32,
     /// The edge's lower node.
     pub node: Ijk,
-    /// The same, as its number in the leaf.
+    /// The number of that node in the leaf.
     pub number: u16,
-    /// The crossing, in voxels from that node.
+    /// The axis of the edge, and the crossing on it in voxels from the lower node, 0 to 1.
     pub along: (Axis, f64),
-    /// See [`Crossing::is_jump`](crate::edge::Crossing::is_jump).
+    /// Whether the sign jumps there ([`Crossing::is_jump`](crate::edge::Crossing::is_jump)).
     pub is_jump: bool,
 }
 
-/// Hands the polygons around the crossed edges that start in `leaf` to `visit`, in the order of the edges.
+/// Hands the polygons around the crossed edges that start in `leaf` to `visit`, in the order of the
+/// edges.
 #[inline]
 pub fn for_polygons(
     cells: &Cells<'_>,
@@ -49,17 +51,17 @@ pub fn for_polygons(
     let inside = cells.context.signs.inside(leaf);
     let origin = cells.context.signs.origin(leaf);
     let around = LeafCells::new(cells, faces, leaf);
-    // The planes of the leaf's nodes, and the next ones.
+    // The node planes of the leaf, and the next ones.
     let planes: [[f64; LEAF_DIM as usize + 1]; 3] =
         std::array::from_fn(|a| std::array::from_fn(|i| lattice.plane(origin.0[a] + i as i32)));
     let at = |local: [i32; 3]| std::array::from_fn(|a| planes[a][local[a] as usize]);
     let mut ids = numbers.range(leaf).map(EdgeId);
-    // Made once: it is large, and most have four corners.
+    // Made once: a polygon is large, and most have four corners.
     let mut polygon = Polygon::default();
     for axis in Axis::ALL {
         for (number, id) in bits(numbers.mask(leaf, axis)).zip(&mut ids) {
             let local = Ijk::in_leaf(Ijk::default(), number);
-            if axis != Axis::X && is_at_cut(cells, leaf, local) {
+            if axis != Axis::X && is_at_border(cells, leaf, local) {
                 continue;
             }
             let node = origin + local;
@@ -90,8 +92,9 @@ pub fn for_polygons(
     }
 }
 
-/// Whether not all cells around the edges across x from node `local` of `leaf` are there, since the field is cut off.
-fn is_at_cut(cells: &Cells<'_>, leaf: LeafId, local: Ijk) -> bool {
+/// Whether cells around the edges across x from node `local` of `leaf` are missing, since the field
+/// is cut off there.
+fn is_at_border(cells: &Cells<'_>, leaf: LeafId, local: Ijk) -> bool {
     const LAST: i32 = LEAF_DIM - 1;
     match local.0[0] {
         0 => cells.context.signs.is_border(leaf, -1),
@@ -100,7 +103,7 @@ fn is_at_cut(cells: &Cells<'_>, leaf: LeafId, local: Ijk) -> bool {
     }
 }
 
-/// The offset `t` along `axis`.
+/// Returns the offset `t` along `axis`.
 pub fn on_axis(axis: Axis, t: f64) -> [f64; 3] {
     let mut along = [0.0; 3];
     along[axis as usize] = t;
@@ -114,16 +117,16 @@ enum End {
     High,
 }
 
-/// The cells around an edge along an axis as offsets (0 or -1) in the other two axes (u, v), counter-clockwise
-/// seen from the upper end.
+/// The cells around an edge along an axis as offsets (0 or -1) in the other two axes (u, v),
+/// counter-clockwise seen from the upper end.
 const AROUND: [[i32; 2]; 4] = [[0, 0], [-1, 0], [-1, -1], [0, -1]];
 
-/// Between cell i and cell i + 1 around an edge: the lower one of the two, and whether the next one follows
-/// along u (0) or v (1).
+/// The lower one of the cells i and i + 1 around an edge, and the axis along which the other one
+/// follows: u (0) or v (1).
 const BETWEEN: [(usize, usize); 4] = [(1, 0), (2, 1), (2, 0), (3, 1)];
 
-/// Makes `polygon` the one around the edge from node `local` of a leaf along `axis`, counter-clockwise seen from the
-/// end that is outside.
+/// Makes `polygon` the one around the edge from node `local` of a leaf along `axis`,
+/// counter-clockwise seen from the end that is outside.
 #[inline]
 fn fill(
     polygon: &mut Polygon,
@@ -139,7 +142,7 @@ fn fill(
         End::Low => [a, d, c, b],
     };
     // Most cells have one sheet, and there are no face vertices.
-    if let Some(vertices) = cells.plain(local.0, axis) {
+    if let Some(vertices) = cells.single_vertices(local.0, axis) {
         return polygon.set_quad(quad(vertices.map(corner)));
     }
     let (u, v) = axis.others();

@@ -1,8 +1,9 @@
-//! The test of Ju and Udeshi (2006) for a diagonal, by intersections of polygon edges with triangles; the
-//! convex/concave analysis of [`envelope`](super::envelope) replaces it (\[LW11\] section VI). It is here to
-//! be measured against (Table VI).
+//! The test of Ju and Udeshi (2006) for a diagonal, by intersections of polygon edges with
+//! triangles; the convex/concave analysis of [`envelope`](super::envelope) replaces it (\[LW11\]
+//! section VI). It is here to be measured against (Table VI).
 //!
-//! The diagonal ac of the quad abcd around a grid edge e = v+ v- passes e on the side of b or on that of d:
+//! The diagonal ac of the quad abcd around a grid edge e = v+ v- passes e on the side of b or on
+//! that of d:
 //!
 //! ```text
 //!      a ----- d         On the side of b it stays in the envelope when it crosses the triangle (b, v+, v-),
@@ -11,14 +12,14 @@
 //!      b ----- c         apart into pieces in the four tetrahedra.
 //! ```
 //!
-//! Both tests are strict. A diagonal that meets the grid edge itself crosses neither wall and is given up for
-//! a vertex on the edge, which is what \[LW11\] says of such cases.
+//! Both tests are strict. A diagonal that meets the grid edge itself crosses neither wall and is
+//! given up for a vertex on the edge, which is what \[LW11\] says of such cases.
 
 use super::envelope::Envelope;
 use crate::geom::predicates::orient3d;
 
-/// Whether both triangles that the diagonal from the first to the third corner of `quad` makes stay in the
-/// envelope, decided by segment-triangle intersections.
+/// Whether both triangles that the diagonal from the first to the third corner of `quad` makes stay
+/// in the envelope, decided by segment-triangle intersections.
 #[inline]
 pub fn is_legal([a, b, c, d]: [[f64; 3]; 4], envelope: &Envelope) -> bool {
     let Envelope { above, below } = *envelope;

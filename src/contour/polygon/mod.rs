@@ -9,4 +9,4 @@ mod leaf_cells;
 mod triangulate;
 
 pub use assemble::{Triangulation, triangulate};
-pub use diagonal_test_times::{CutTimes, cut_times};
+pub use diagonal_test_times::{DiagonalTestTimes, time_diagonal_tests};

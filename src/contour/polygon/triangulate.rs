@@ -1,26 +1,27 @@
-//! From the polygon around a crossed grid edge to triangles.
+//! The triangles of a polygon around a crossed grid edge: which diagonals, or which fan.
 
 use super::envelope::Envelope;
 use super::ju_udeshi;
 use crate::contour::feature::CreasePlanes;
-use crate::contour::settings::CutMethod;
+use crate::contour::settings::DiagonalTest;
 use glam::DVec3;
 
 /// Four cell vertices, and a face vertex between any two of them.
 const MAX_CORNERS: usize = 8;
 
-/// The difference in distance from the tangent plane below which two diagonals count as equally good, in
-/// voxels. The shorter one is taken then.
+/// The difference in distance from the tangent plane below which two diagonals count as equally
+/// good, in voxels. The shorter one is taken then.
 ///
-/// On flat and gently curved parts the distances are noise of the size of the coordinates' rounding, and
-/// choosing by noise gives ragged meshes. A crease whose diagonals differ by less is not visible.
+/// On flat and gently curved parts the distances are noise of the size of the coordinates'
+/// rounding, and choosing by noise gives ragged meshes. A crease whose diagonals differ by less is
+/// not visible.
 const PLANE_TOLERANCE: f64 = 1e-4;
 
-/// The difference in distance from the crease planes below which two diagonals count as equally good, in
-/// voxels.
+/// The difference in distance from the crease planes below which two diagonals count as equally
+/// good, in voxels.
 ///
-/// The faces of a crease may be curved. At radii of 7 voxels the middle of a diagonal is up to this far from
-/// the planes at its ends.
+/// The faces of a crease may be curved. At radii of 7 voxels the middle of a diagonal is up to this
+/// far from the planes at its ends.
 const CREASE_TOLERANCE: f64 = 0.05;
 
 /// A corner of a polygon.
@@ -80,8 +81,8 @@ impl Polygon {
     }
 }
 
-/// The surface around a crossed grid edge: its tangent plane at the crossing, and the planes of the creases
-/// that the cells see.
+/// The surface around a crossed grid edge: its tangent plane at the crossing, and the planes of the
+/// creases that the cells see.
 #[derive(Clone, Copy, Debug)]
 pub struct Fit<'a> {
     /// The crossing, unrounded.
@@ -90,8 +91,8 @@ pub struct Fit<'a> {
     pub normal: DVec3,
     /// The planes of creases nearby.
     pub crease_planes: &'a CreasePlanes,
-    /// The difference in distance from the crease planes below which two diagonals count as equally good, in
-    /// model units.
+    /// The difference in distance from the crease planes below which two diagonals count as equally
+    /// good, in model units.
     pub crease_tolerance: f64,
     /// The same difference for the tangent plane, in model units.
     pub plane_tolerance: f64,
@@ -104,11 +105,11 @@ impl<'a> Fit<'a> {
         Fit { point, normal, crease_planes, crease_tolerance, plane_tolerance }
     }
 
-    /// Returns the distances of a diagonal's midpoint from the crease planes and from the tangent plane, in
-    /// model units.
+    /// Returns the distances of a diagonal's midpoint from the crease planes and from the tangent
+    /// plane, in model units.
     ///
-    /// A diagonal along a crease lies in the planes of both its faces. A diagonal across a crease cuts through
-    /// the solid or the air.
+    /// A diagonal along a crease lies in the planes of both its faces. A diagonal across a crease
+    /// cuts through the solid or the air.
     fn misfit(&self, diagonal: [[f64; 3]; 2]) -> (f64, f64) {
         let [a, b] = diagonal.map(DVec3::from);
         let middle = 0.5 * (a + b);
@@ -117,7 +118,8 @@ impl<'a> Fit<'a> {
         (from_creases, self.normal.dot(middle - self.point).abs())
     }
 
-    /// Whether the diagonal `second` is closer to the surface than `first`, or as close and shorter.
+    /// Whether the diagonal `second` is closer to the surface than `first`, or as close and
+    /// shorter.
     fn prefers(&self, second: [[f64; 3]; 2], first: [[f64; 3]; 2]) -> bool {
         let (a, b) = (self.misfit(first), self.misfit(second));
         if (a.0 - b.0).abs() > self.crease_tolerance {
@@ -135,48 +137,51 @@ fn length2(diagonal: [[f64; 3]; 2]) -> f64 {
     b.distance_squared(a)
 }
 
-/// How a polygon was cut.
+/// The way in which a polygon was split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Cut {
+pub enum Split {
     /// Along diagonals only.
     Diagonals,
-    /// With a vertex on the grid edge, number `u32::MAX` in the triangles, as hub of a fan.
-    Split,
+    /// Wholly or in part as a fan around a vertex on the grid edge, [`EDGE_VERTEX`] in the
+    /// triangles.
+    Fan,
 }
 
-/// The number that stands for the vertex on the grid edge.
+/// Stands for the number of the vertex on the grid edge.
 pub const EDGE_VERTEX: u32 = u32::MAX;
 
-/// Cuts `polygon` into triangles that stay in the envelope and appends them to `triangles`.
-pub fn polygonize(
+/// Splits a polygon into triangles that stay in the envelope, and appends these to `triangles`.
+pub fn triangulate_polygon(
     polygon: &Polygon,
     envelope: &Envelope,
     fit: &Fit<'_>,
-    method: CutMethod,
+    test: DiagonalTest,
     triangles: &mut Vec<[u32; 3]>,
-) -> Cut {
-    let cut = match method {
-        CutMethod::ConvexConcave if polygon.len > 4 => return ears(polygon, envelope, fit, triangles),
-        CutMethod::ConvexConcave => quad(polygon, fit, is_good(envelope)),
-        CutMethod::PolygonEdges if polygon.len > 4 => None,
-        CutMethod::PolygonEdges => quad(polygon, fit, |quad| ju_udeshi::is_legal(quad, envelope)),
+) -> Split {
+    let diagonal = match test {
+        DiagonalTest::ConvexConcave if polygon.len > 4 => return ears(polygon, envelope, fit, triangles),
+        DiagonalTest::ConvexConcave => quad(polygon, fit, is_good(envelope)),
+        DiagonalTest::PolygonEdges if polygon.len > 4 => None,
+        DiagonalTest::PolygonEdges => quad(polygon, fit, |quad| ju_udeshi::is_legal(quad, envelope)),
     };
-    match cut {
-        Some(cut) => {
-            triangles.extend(cut);
-            Cut::Diagonals
+    match diagonal {
+        Some(pair) => {
+            triangles.extend(pair);
+            Split::Diagonals
         }
         None => fan(polygon, triangles),
     }
 }
 
-/// Whether the diagonal from the first to the third corner of a quad makes two good triangles.
+/// Returns the test whether the diagonal from the first to the third corner makes two good
+/// triangles.
 fn is_good(envelope: &Envelope) -> impl Fn([[f64; 3]; 4]) -> bool {
     |[a, b, c, d]| envelope.is_good(a, b, c) && envelope.is_good(c, d, a)
 }
 
-/// Cuts a polygon with face vertices: good ears first, the rest as a quad or around the edge's vertex.
-fn ears(polygon: &Polygon, envelope: &Envelope, fit: &Fit<'_>, triangles: &mut Vec<[u32; 3]>) -> Cut {
+/// Splits a polygon with face vertices: good ears first, the rest as a quad or around the edge's
+/// vertex.
+fn ears(polygon: &Polygon, envelope: &Envelope, fit: &Fit<'_>, triangles: &mut Vec<[u32; 3]>) -> Split {
     let first = triangles.len();
     let mut rest = *polygon;
     while rest.len > 4 {
@@ -185,12 +190,12 @@ fn ears(polygon: &Polygon, envelope: &Envelope, fit: &Fit<'_>, triangles: &mut V
         rest.remove(ear);
     }
     if rest.len == 4
-        && let Some(cut) = quad(&rest, fit, is_good(envelope))
+        && let Some(pair) = quad(&rest, fit, is_good(envelope))
     {
-        triangles.extend(cut);
-        return Cut::Diagonals;
+        triangles.extend(pair);
+        return Split::Diagonals;
     }
-    // What is left goes around the edge's own vertex, as long as its sides still turn around the edge.
+    // The rest goes around the edge's own vertex, as long as its sides still turn around the edge.
     let n = rest.len;
     let turns = |i: usize| envelope.turns(rest.corners[i].position, rest.corners[(i + 1) % n].position);
     if (0..n).all(turns) {
@@ -200,8 +205,9 @@ fn ears(polygon: &Polygon, envelope: &Envelope, fit: &Fit<'_>, triangles: &mut V
     fan(polygon, triangles)
 }
 
-/// The two triangles of the better legal diagonal of a quad; `None` without a legal one. `is_legal` judges
-/// the diagonal from the first to the third corner.
+/// Returns the two triangles of the better legal diagonal of a quad; `None` without a legal one.
+///
+/// `is_legal` judges the diagonal from the first to the third corner.
 #[inline]
 fn quad(polygon: &Polygon, fit: &Fit<'_>, is_legal: impl Fn([[f64; 3]; 4]) -> bool) -> Option<[[u32; 3]; 2]> {
     let corner = |i: usize| polygon.corners[i & 3];
@@ -211,11 +217,11 @@ fn quad(polygon: &Polygon, fit: &Fit<'_>, is_legal: impl Fn([[f64; 3]; 4]) -> bo
     [first, first ^ 1].into_iter().find_map(|i| {
         let [a, b, c, d] = [corner(i), corner(i + 1), corner(i + 2), corner(i + 3)];
         is_legal([a, b, c, d].map(|corner| corner.position))
-            .then(|| [[a, b, c], [c, d, a]].map(|half| half.map(|corner| corner.vertex)))
+            .then(|| [[a, b, c], [c, d, a]].map(|triangle| triangle.map(|corner| corner.vertex)))
     })
 }
 
-/// The good ear whose diagonal fits the surface best.
+/// Returns the good ear whose diagonal fits the surface best.
 fn best_ear(polygon: &Polygon, envelope: &Envelope, fit: &Fit) -> Option<usize> {
     let mut best: Option<(usize, [[f64; 3]; 2])> = None;
     for i in 0..polygon.len {
@@ -227,12 +233,13 @@ fn best_ear(polygon: &Polygon, envelope: &Envelope, fit: &Fit) -> Option<usize> 
     best.map(|(i, _)| i)
 }
 
-fn fan(polygon: &Polygon, triangles: &mut Vec<[u32; 3]>) -> Cut {
+/// Splits a polygon into a fan around the vertex on the grid edge.
+fn fan(polygon: &Polygon, triangles: &mut Vec<[u32; 3]>) -> Split {
     let corners = polygon.corners();
     for (i, corner) in corners.iter().enumerate() {
         triangles.push([corner.vertex, corners[(i + 1) % corners.len()].vertex, EDGE_VERTEX]);
     }
-    Cut::Split
+    Split::Fan
 }
 
 #[cfg(test)]
@@ -241,28 +248,31 @@ mod tests {
 
     const ENVELOPE: Envelope = Envelope { above: [0.0, 0.0, 1.0], below: [0.0; 3] };
 
-    fn cut(points: &[[f64; 3]], normal: [f64; 3]) -> (Cut, Vec<[u32; 3]>) {
+    fn split(points: &[[f64; 3]], normal: [f64; 3]) -> (Split, Vec<[u32; 3]>) {
         let mut polygon = Polygon::default();
         for (vertex, &position) in (0..).zip(points) {
             polygon.push(PolygonCorner { vertex, position });
         }
         let mut triangles = Vec::new();
         let fit = Fit::new(DVec3::new(0.0, 0.0, 0.5), normal.into(), &CreasePlanes::NONE, 1.0);
-        (polygonize(&polygon, &ENVELOPE, &fit, CutMethod::ConvexConcave, &mut triangles), triangles)
+        (
+            triangulate_polygon(&polygon, &ENVELOPE, &fit, DiagonalTest::ConvexConcave, &mut triangles),
+            triangles,
+        )
     }
 
     #[test]
     fn creases_come_out_along_diagonals() {
         // Corners 1 and 3 on a crease, corner 0 on the flat side with the crossing, corner 2 below.
         let points = [[0.5, 0.5, 0.5], [-0.5, 0.4, 0.5], [-0.5, -0.5, 0.1], [0.4, -0.5, 0.5]];
-        let (kind, triangles) = cut(&points, [0.0, 0.0, 1.0]);
-        assert_eq!((kind, triangles), (Cut::Diagonals, vec![[1, 2, 3], [3, 0, 1]]));
+        let (kind, triangles) = split(&points, [0.0, 0.0, 1.0]);
+        assert_eq!((kind, triangles), (Split::Diagonals, vec![[1, 2, 3], [3, 0, 1]]));
     }
 
     #[test]
     fn flat_quads_take_the_shorter_diagonal() {
         let points = [[0.2, 0.2, 0.5], [-0.8, 0.9, 0.5], [-0.2, -0.2, 0.5], [0.9, -0.8, 0.5]];
-        assert_eq!(cut(&points, [0.0, 0.0, 1.0]).1, [[0, 1, 2], [2, 3, 0]]);
+        assert_eq!(split(&points, [0.0, 0.0, 1.0]).1, [[0, 1, 2], [2, 3, 0]]);
     }
 
     /// Corners anywhere in their cells: \[LW11\] Remarks 10 and 11.
@@ -283,15 +293,15 @@ mod tests {
                 !ENVELOPE.is_good(points[(i + 3) % 4], points[i], points[(i + 1) % 4])
             });
             assert!((0..2).all(|i| !(concave[i] && concave[i + 2])), "{points:?}");
-            let (kind, triangles) = cut(&points, [0.0, 0.0, 1.0]);
+            let (kind, triangles) = split(&points, [0.0, 0.0, 1.0]);
             match concave.iter().filter(|&&c| c).count() {
                 2 => {
-                    assert_eq!((kind, triangles.len()), (Cut::Split, 4));
+                    assert_eq!((kind, triangles.len()), (Split::Fan, 4));
                     assert!(triangles.iter().all(|t| t[2] == EDGE_VERTEX));
                     splits += 1;
                 }
                 count => {
-                    assert_eq!((kind, triangles.len()), (Cut::Diagonals, 2));
+                    assert_eq!((kind, triangles.len()), (Split::Diagonals, 2));
                     single += count;
                 }
             }
@@ -303,7 +313,7 @@ mod tests {
     fn polygons_with_face_vertices_lose_their_ears() {
         let points =
             [[0.5, 0.5, 0.5], [0.0, 0.4, 0.6], [-0.5, 0.5, 0.5], [-0.5, -0.5, 0.5], [0.5, -0.5, 0.5]];
-        let (kind, triangles) = cut(&points, [0.0, 0.0, 1.0]);
-        assert_eq!((kind, triangles.len()), (Cut::Diagonals, 3));
+        let (kind, triangles) = split(&points, [0.0, 0.0, 1.0]);
+        assert_eq!((kind, triangles.len()), (Split::Diagonals, 3));
     }
 }

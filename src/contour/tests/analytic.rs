@@ -171,7 +171,8 @@ fn rotated_boxes_have_their_corners() {
                     exact += 1;
                     assert!(distance < tolerance, "{distance}");
                 } else {
-                    // The corner pokes out of the cells that see its planes; their vertices cannot follow.
+                    // The corner pokes out of the cells that see its planes; their vertices cannot
+                    // follow.
                     blunt += 1;
                     assert!(distance < voxel, "{distance}");
                 }
@@ -195,7 +196,8 @@ fn aligned_boxes_are_exact() {
     assert!(mesh.vertices.iter().all(|&v| solid.at(v).0.abs() < 1e-6));
 }
 
-/// Plates thinner than a voxel, where most cells have two sheets and some are missed by the lattice.
+/// Plates thinner than a voxel, where most cells have two sheets and some are missed by the
+/// lattice.
 #[test]
 fn thin_plates_are_clean() {
     for half in [0.2, 0.35, 0.6] {

@@ -1,14 +1,15 @@
 //! Sign fields and crossings from functions.
 
 use crate::band::SignField;
-use crate::contour::{ContourSettings, ContourStatistics, CutMethod, ImplicitSurface, Precision, contour};
+use crate::contour::{ContourSettings, ContourStatistics, DiagonalTest, ImplicitSurface, Precision, contour};
 use crate::edge::{Crossing, Crossings, EdgeNumbers};
 use crate::lattice::{Axis, Ijk, LEAF_DIM, Lattice, LeafMask, Slab};
 use crate::mesh::TriMesh;
 use crate::run::RunSettings;
 use std::convert::Infallible;
 
-/// A field whose nodes from `low` to `high` are inside by a rule, and whose other nodes are outside.
+/// A field whose nodes from `low` to `high` are inside by a rule, and whose other nodes are
+/// outside.
 pub fn signs(low: Ijk, high: Ijk, inside: impl Fn(Ijk) -> bool) -> SignField {
     let (first, last) = (low.leaf_origin(), high.leaf_origin());
     let steps = |a: usize| (first.0[a]..=last.0[a]).step_by(LEAF_DIM as usize);
@@ -63,7 +64,8 @@ impl<F: Fn([f64; 3]) -> (f64, [f64; 3])> Implicit for F {
     }
 }
 
-/// Signs and crossings of an implicit surface within the nodes -n..=n, crossings bisected to the last bit.
+/// Signs and crossings of an implicit surface within the nodes -n..=n, crossings bisected to the
+/// last bit.
 pub fn sample(surface: &impl Implicit, n: i32, voxel: f64) -> (SignField, Crossings) {
     let world = |node: Ijk, axis: Axis, t: f64| {
         let mut p = node.0.map(f64::from);
@@ -86,15 +88,15 @@ pub fn sample(surface: &impl Implicit, n: i32, voxel: f64) -> (SignField, Crossi
     (field, crossings)
 }
 
-/// Contours with the triangles chosen by a method.
-pub fn cut_by(
-    method: CutMethod,
+/// Contours with the diagonals chosen by a test.
+pub fn run_by(
+    test: DiagonalTest,
     (signs, crossings): &(SignField, Crossings),
     voxel: f64,
     precision: Precision,
 ) -> (TriMesh, ContourStatistics) {
     let run = RunSettings::with_threads(2).unwrap();
-    let settings = ContourSettings { precision, cut: method, ..Default::default() };
+    let settings = ContourSettings { precision, diagonal_test: test, ..Default::default() };
     contour(signs, crossings, Lattice { voxel }, None, &settings, &run).unwrap()
 }
 

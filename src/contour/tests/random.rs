@@ -1,9 +1,9 @@
 //! Random lattices made to be nasty, each judged by the exact audit.
 
 use crate::band::SignField;
-use crate::contour::polygon::cut_times;
-use crate::contour::tests::fields::{Random, crossings, cut_by, run, signs};
-use crate::contour::{ContourSettings, ContourStatistics, CutMethod, Precision};
+use crate::contour::polygon::time_diagonal_tests;
+use crate::contour::tests::fields::{Random, crossings, run, run_by, signs};
+use crate::contour::{ContourSettings, ContourStatistics, DiagonalTest, Precision};
 use crate::edge::{Crossing, Crossings};
 use crate::lattice::{Axis, Ijk};
 use crate::verify::tests::audit::audit;
@@ -84,18 +84,18 @@ fn random_lattices_are_closed_manifold_and_free_of_intersections() {
 fn the_test_of_ju_and_udeshi_keeps_the_promise_with_no_fewer_triangles() {
     for seed in 0..60 {
         let field = lattice(seed, 6, Ijk([-2; 3]));
-        let [analysis, polygon_edges] = [CutMethod::ConvexConcave, CutMethod::PolygonEdges]
-            .map(|method| cut_by(method, &field, 0.1, Precision::F32));
+        let [analysis, polygon_edges] = [DiagonalTest::ConvexConcave, DiagonalTest::PolygonEdges]
+            .map(|test| run_by(test, &field, 0.1, Precision::F32));
         let audit = audit(&polygon_edges.0);
         assert!(audit.is_sound(), "seed {seed}: {audit:?}, {:?}", polygon_edges.1);
         assert!(polygon_edges.1.triangles >= analysis.1.triangles, "seed {seed}");
         assert_eq!(polygon_edges.1.quads, analysis.1.quads);
         // The table's own measurement cuts the same polygons.
-        let methods = [CutMethod::ConvexConcave, CutMethod::PolygonEdges];
+        let tests = [DiagonalTest::ConvexConcave, DiagonalTest::PolygonEdges];
         let run = crate::run::RunSettings::with_threads(1).unwrap();
         let settings = ContourSettings { precision: Precision::F32, ..ContourSettings::default() };
         let lattice = crate::lattice::Lattice { voxel: 0.1 };
-        let times = cut_times(&field.0, &field.1, lattice, &settings, methods, &run).unwrap();
+        let times = time_diagonal_tests(&field.0, &field.1, lattice, &settings, tests, &run).unwrap();
         for (times, (mesh, statistics)) in times.iter().zip([&analysis, &polygon_edges]) {
             assert_eq!((times.triangles, times.split), (mesh.triangles.len() as u64, statistics.split));
             assert!(times.seconds > 0.0);

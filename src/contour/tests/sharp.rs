@@ -50,7 +50,8 @@ impl ImplicitSurface for Polyhedron {
     }
 }
 
-/// A convex polyhedron by its corners, its edges between them, and its faces by outward normals through a corner.
+/// A convex polyhedron by its corners, its edges between them, and its faces by outward normals
+/// through a corner.
 struct Shape {
     corners: Vec<DVec3>,
     edges: Vec<[usize; 2]>,
@@ -97,8 +98,9 @@ fn wedge(angle: f64, depth: f64, long: f64) -> Shape {
     Shape { corners, edges, faces }
 }
 
-/// What a mesh has of a shape: the share of the edges' length with a mesh edge along it within 0.05 voxels, the
-/// farthest that a corner is from a vertex, and the farthest vertex from the surface, in voxels.
+/// What a mesh has of a shape: the share of the edges' length with a mesh edge along it within 0.05
+/// voxels, the farthest that a corner is from a vertex, and the farthest vertex from the surface,
+/// in voxels.
 struct Found {
     creases: f64,
     corner: f64,
@@ -151,7 +153,8 @@ fn has_edge(mesh: &TriMesh, p: DVec3, direction: DVec3) -> bool {
     })
 }
 
-/// The least of the crease shares and the largest of the distances over random rotations and shifts.
+/// The least of the crease shares and the largest of the distances over random rotations and
+/// shifts.
 fn worst(shape: &Shape, is_hollow: bool, rounds: u64) -> Found {
     let mut worst =
         Found { creases: 1.0, corner: 0.0, vertex: 0.0, statistics: ContourStatistics::default() };

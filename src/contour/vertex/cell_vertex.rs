@@ -1,5 +1,5 @@
-//! The vertex of a sheet: as near to the minimiser of its quadratic error function as its cell and its walls
-//! allow.
+//! The vertex of a sheet: as near to the minimiser of its quadratic error function as its cell and
+//! its walls allow.
 
 use super::feasible_region::Region;
 use crate::contour::cell::{Case, Edge, EdgeSet};
@@ -15,29 +15,32 @@ use glam::DVec3;
 
 /// The share of the margin that a vertex keeps after rounding.
 ///
-/// The margin is 2 units in the last place or more, and rounding of the vertex and of the cell's walls takes
-/// half a unit each.
+/// The margin is 2 units in the last place or more, and rounding of the vertex and of the cell's
+/// walls takes half a unit each.
 const KEPT: f64 = 0.25;
 
-/// The share of the margin from its walls that a vertex keeps after rounding. Three coordinates are rounded
-/// there.
+/// The share of the margin from its walls that a vertex keeps after rounding. Three coordinates are
+/// rounded there.
 const KEPT_AT_WALLS: f64 = 1.0 / 16.0;
 
-/// The number of halvings of the step from the start to the target before the start itself is taken.
+/// The number of halvings of the step from the start to the target before the start itself is
+/// taken.
 const HALVINGS: i32 = 12;
 
 /// The number of steps from the mean of the crossings to the mean of the midpoints of their edges.
 const STEPS_TO_MIDDLE: i32 = 8;
 
-/// The distance from the minimiser to a tangent plane above which the planes do not meet: a smooth face ends
-/// before. In voxels; spheres with a radius of 4 voxels have 0.04.
+/// The distance from the minimiser to a tangent plane above which the planes do not meet: a smooth
+/// face ends before. In voxels; spheres with a radius of 4 voxels have 0.04.
 pub const MAX_DISAGREEMENT: f64 = 0.035;
 
-/// The greatest height of a vertex above a smooth surface, in voxels. Higher vertices are taken down.
+/// The greatest height of a vertex above a smooth surface, in voxels. Higher vertices are taken
+/// down.
 ///
-/// Tangent planes of a sphere meet above it, by 1 / (6 r) voxels at a radius of r voxels and more in corners
-/// of cells. That is where the triangles between the vertices, which cut through the sphere, are off the
-/// least on average. On the sphere itself their mean error would be 2.4 times as large.
+/// Tangent planes of a sphere meet above it, by 1 / (6 r) voxels at a radius of r voxels and more
+/// in corners of cells. That is where the triangles between the vertices, which cut through the
+/// sphere, are off the least on average. On the sphere itself their mean error would be 2.4 times
+/// as large.
 const MAX_HEIGHT: f64 = 0.03;
 
 /// Whether a vertex lies at the minimiser of its error function.
@@ -74,8 +77,8 @@ pub struct CellVertex {
     pub is_jump: bool,
 }
 
-/// Places the vertex of sheet number `sheet` of a cell. `crossing` returns the crossing of each of the
-/// sheet's edges.
+/// Places the vertex of sheet number `sheet` of a cell. `crossing` returns the crossing of each of
+/// the sheet's edges.
 pub fn place<'a>(
     lattice: &RoundedLattice,
     cell: Ijk,
@@ -166,8 +169,9 @@ fn in_cell<'a>(
     (position.unwrap_or(start), Placement::Clamped)
 }
 
-/// Returns a position that is allowed for sure: the mean of the crossings, or, if rounding or the margin puts
-/// that on a wall, a position on the way from there to the mean of the midpoints of the crossed edges.
+/// Returns a position that is allowed for sure: the mean of the crossings, or, if rounding or the
+/// margin puts that on a wall, a position on the way from there to the mean of the midpoints of the
+/// crossed edges.
 fn start<'a>(
     lattice: &RoundedLattice,
     cell: Ijk,
@@ -190,13 +194,15 @@ fn start<'a>(
     found.unwrap_or_else(|| position(STEPS_TO_MIDDLE))
 }
 
-/// Returns a crossing as a sample of its sheet: the point in coordinates 0 to 1 of the cell, and the normal.
+/// Returns a crossing as a sample of its sheet: the point in coordinates 0 to 1 of the cell, and
+/// the normal.
 #[inline]
 pub fn sample(edge: Edge, crossing: &Crossing) -> (DVec3, DVec3) {
     (on_edge(edge, unit(crossing.t)), DVec3::from(crossing.normal.map(f64::from)))
 }
 
-/// Returns the rounded position of a point of a cell, if the point keeps the margin from the cell's walls.
+/// Returns the rounded position of a point of a cell, if the point keeps the margin from the cell's
+/// walls.
 #[inline]
 pub fn free(lattice: &RoundedLattice, cell: Ijk, point: DVec3) -> Option<[f64; 3]> {
     let margin = lattice.margin();

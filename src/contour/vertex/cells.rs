@@ -17,8 +17,8 @@ pub struct Cells<'a> {
     /// By cell.
     cases: Vec<CellCase>,
     /// By leaf whether any of its cells may be ambiguous
-    /// ([`CornerSigns::crowded`](crate::contour::cell::CornerSigns::crowded)).
-    crowded: Vec<bool>,
+    /// ([`CornerSigns::maybe_ambiguous`](crate::contour::cell::CornerSigns::maybe_ambiguous)).
+    maybe_ambiguous: Vec<bool>,
 }
 
 /// The case of an active cell, and the numbers of its vertices.
@@ -39,22 +39,24 @@ impl CellCase {
 }
 
 impl<'a> Cells<'a> {
-    /// Makes the cells from their cases, by cell, and from what is known of their leaves and vertices.
+    /// Makes the cells from their cases, by cell, and from what is known of their leaves and
+    /// vertices.
     pub fn new(
         context: CellContext<'a>,
         cases: Vec<CellCase>,
-        crowded: Vec<bool>,
+        maybe_ambiguous: Vec<bool>,
         features: FeatureMap,
         jumps: VertexSet,
     ) -> Cells<'a> {
-        Cells { context, features, jumps, cases, crowded }
+        Cells { context, features, jumps, cases, maybe_ambiguous }
     }
 
-    /// Whether a leaf has a cell that may be ambiguous, in which sheets can get in each other's way.
+    /// Whether a leaf has a cell that may be ambiguous, in which sheets can get in each other's
+    /// way.
     ///
     /// Few leaves have one.
-    pub fn is_crowded(&self, leaf: LeafId) -> bool {
-        self.crowded[leaf.0 as usize]
+    pub fn maybe_ambiguous(&self, leaf: LeafId) -> bool {
+        self.maybe_ambiguous[leaf.0 as usize]
     }
 
     /// Returns the case of a cell.

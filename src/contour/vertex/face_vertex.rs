@@ -1,9 +1,9 @@
-//! Vertices on faces between cells, where the straight connection of two cell vertices would leave the
+//! Vertices on faces between cells, where the segment between two cell vertices would leave the
 //! part of the face that belongs to their pair of crossings.
 //!
-//! The segment between the vertices of two neighbouring cells meets their common face. Where the contour
-//! passes a corner of the face beside another sheet (the face is ambiguous, or the pair belongs to a cap in one
-//! of the cells), it must do so between the corner and the face's diagonal:
+//! The segment between the vertices of two neighbouring cells meets their common face. Where the
+//! contour passes a corner of the face beside another sheet (the face is ambiguous, or the pair
+//! belongs to a cap in one of the cells), it must do so between the corner and the face's diagonal:
 //!
 //! ```text
 //!    n2 ------- +         c:      the corner that the pair goes around
@@ -25,36 +25,37 @@ use crate::lattice::{Axis, Ijk, LEAF_DIM, bits};
 use crate::run::{Cancelled, RunSettings, SHARE};
 use rayon::prelude::*;
 
-/// Which of the upper faces of an active cell have vertices.
+/// The face vertices of an active cell, on its upper faces.
 #[derive(Clone, Copy, Debug)]
 struct Marks {
     cell: CellId,
-    /// Face vertices of the leaf's cells before this one: at most 6 x 512.
+    /// The number of face vertices of the leaf's cells before this one: at most 6 x 512.
     before: u16,
-    /// Bit 2 axis + pair.
+    /// Bit 2 axis + pair of each pair with a vertex.
     pairs: u8,
 }
 
 /// The face vertices of all cells, and their numbers.
 #[derive(Debug)]
 pub struct FaceVertices {
-    /// Of the cells that have some, ascending: few of thousands.
+    /// The cells with face vertices, ascending: few of thousands.
     marks: Vec<Marks>,
-    /// Per leaf the number of its first face vertex, and the number after the last at the end.
+    /// The number of the first face vertex of each leaf, and the number after the last at the end.
     first: Vec<u32>,
     /// The positions, in the order leaf, cell, axis, pair.
     pub positions: Vec<[f64; 3]>,
 }
 
 impl FaceVertices {
-    /// The numbers of the face vertices of a leaf.
+    /// Returns the numbers of the face vertices of a leaf.
     pub fn range(&self, leaf: LeafId) -> std::ops::Range<u32> {
         let n = leaf.0 as usize;
         self.first[n]..self.first[n + 1]
     }
 
-    /// The number of the face vertex between the cell `cell` of `leaf`, with case `case`, and the next cell
-    /// along `axis`, on the pair with the crossing of `edge`, as an edge of `cell`; `None` if there is none.
+    /// Returns the number of the face vertex between a cell of `leaf` and the next cell along
+    /// `axis`, on the pair with the crossing of `edge`; `None` if there is none. `edge` is an edge
+    /// of `cell`.
     #[inline]
     pub fn get(&self, leaf: LeafId, cell: CellId, case: &Case, axis: Axis, edge: Edge) -> Option<u32> {
         let marks = self.marks[self.marks.binary_search_by_key(&cell, |marks| marks.cell).ok()?];
@@ -67,10 +68,10 @@ impl FaceVertices {
     }
 }
 
-/// Finds the pairs that need a face vertex. Face vertices are numbered on from the cell vertices `vertices`.
+/// Places a vertex on each pair that needs one, numbered on from the cell vertices `vertices`.
 ///
 /// # Errors
-/// More than 2^32 - 1 vertices, or cancellation.
+/// When there are more than 2^32 - 1 vertices, or the run is cancelled.
 pub fn face_vertices(
     cells: &Cells<'_>,
     vertices: &[[f64; 3]],
@@ -78,8 +79,9 @@ pub fn face_vertices(
 ) -> Result<FaceVertices, ContourError> {
     // Both cells at a face can need a vertex there.
     let upper = |leaf| Axis::ALL.map(|axis| cells.context.signs.neighbour(leaf, Ijk::default().next(axis).0));
-    let is_crowded = |leaf| [Some(leaf)].iter().chain(&upper(leaf)).flatten().any(|&l| cells.is_crowded(l));
-    let leaves: Vec<LeafId> = cells.context.numbers.leaves().filter(|&leaf| is_crowded(leaf)).collect();
+    let may_need_vertex =
+        |leaf| [Some(leaf)].iter().chain(&upper(leaf)).flatten().any(|&l| cells.maybe_ambiguous(l));
+    let leaves: Vec<LeafId> = cells.context.numbers.leaves().filter(|&leaf| may_need_vertex(leaf)).collect();
     let per_leaf: Vec<(Vec<Marks>, Vec<[f64; 3]>)> = leaves
         .par_iter()
         .with_min_len(16)
@@ -105,7 +107,7 @@ pub fn face_vertices(
     Ok(FaceVertices { marks, first, positions })
 }
 
-/// The face vertices on the upper faces of the cells of one leaf.
+/// Places the face vertices on the upper faces of the cells of one leaf.
 fn in_leaf(cells: &Cells<'_>, vertices: &[[f64; 3]], leaf: LeafId) -> (Vec<Marks>, Vec<[f64; 3]>) {
     let (signs, numbers): (&SignField, &CellNumbers) = (cells.context.signs, cells.context.numbers);
     let (mut all, mut positions) = (Vec::new(), Vec::new());
@@ -162,13 +164,14 @@ fn in_leaf(cells: &Cells<'_>, vertices: &[[f64; 3]], leaf: LeafId) -> (Vec<Marks
     (all, positions)
 }
 
-/// The edge of the next cell along `axis` that coincides with `edge` on the upper face across `axis`.
+/// Returns the edge of the next cell along `axis` that coincides with `edge` on the upper face
+/// across `axis`.
 fn across(edge: Edge, axis: Axis) -> Edge {
     edge.low().across(axis).edge(edge.axis())
 }
 
-/// Whether the segment between the vertices of `cell` and of the next cell along `axis` passes their
-/// common face strictly on the side of `corner` of the line through the corner's neighbours.
+/// Whether the segment between the vertices of `cell` and of the next cell along `axis` meets their
+/// common face strictly between `corner` and the line through the corner's neighbours.
 fn passes_corner(
     lattice: &RoundedLattice,
     cell: Ijk,
@@ -178,13 +181,14 @@ fn passes_corner(
 ) -> bool {
     let (u, v) = axis.others();
     let node = |c: Corner| lattice.node(cell + Ijk(c.offset()));
-    let side = orient3d(ends[0], ends[1], node(corner.across(u)), node(corner.across(v)));
-    // For the corner at (0, 0) the segment, the line and the corner follow the right hand; each mirroring
-    // turns the sign around.
-    if corner.side(u) == corner.side(v) { side > 0.0 } else { side < 0.0 }
+    let turn = orient3d(ends[0], ends[1], node(corner.across(u)), node(corner.across(v)));
+    // For the corner at (0, 0) the segment, the line and the corner follow the right hand. Each
+    // mirroring turns the sign around.
+    if corner.position(u) == corner.position(v) { turn > 0.0 } else { turn < 0.0 }
 }
 
-/// The middle of a pair on the upper face across `axis` of the cell `local`, exactly on the rounded face.
+/// Returns the middle of a pair on the upper face across `axis` of the cell `local`, exactly on the
+/// rounded face.
 fn middle(
     lattice: &RoundedLattice,
     crossings: &Crossings,

@@ -1,4 +1,5 @@
-//! The region in which the vertex of a sheet may lie: its cell, between the walls of several sheets.
+//! The region in which the vertex of a sheet may lie: its cell, between the walls of several
+//! sheets.
 
 use crate::contour::cell::{Case, Corner, Edge, MAX_SHEETS, SheetKind};
 use crate::geom::quadric::HalfSpace;
@@ -29,8 +30,8 @@ impl Region {
 
     /// Returns the region of sheet number `sheet` of `case`.
     ///
-    /// That is the cell shrunk by `margin` voxels, on the inner side of the sheet's own wall and on the outer
-    /// side of the others, `wall_margin` away from them.
+    /// That is the cell shrunk by `margin` voxels, on the inner side of the sheet's own wall and on
+    /// the outer side of the others, `wall_margin` away from them.
     pub fn of_sheet(case: &Case, sheet: usize, margin: f64, wall_margin: f64) -> Region {
         let mut region = Region::cell(margin);
         if case.has_several_sheets() {
@@ -80,12 +81,12 @@ fn edge_wall(edge: Edge) -> HalfSpace {
     beyond_wall(edge.low(), &[u, v])
 }
 
-/// Returns the points whose distances from the cell's faces at `corner`, added up over `axes`, are at most
-/// one voxel.
+/// Returns the points whose distances from the cell's faces at `corner`, added up over `axes`, are
+/// at most one voxel.
 fn beyond_wall(corner: Corner, axes: &[Axis]) -> HalfSpace {
     let mut half = HalfSpace { normal: DVec3::ZERO, offset: -1.0 };
     for &axis in axes {
-        if corner.side(axis) == 0 {
+        if corner.position(axis) == 0 {
             half.normal[axis as usize] = -1.0;
         } else {
             // The distance from the upper face is 1 - w.

@@ -25,8 +25,8 @@ pub struct LeafVertices {
     /// The number of clamped vertices
     /// ([`ContourStatistics::clamped`](crate::contour::ContourStatistics::clamped)).
     pub clamped: u16,
-    /// Whether any cell is crowded ([`CornerSigns::crowded`]).
-    pub is_crowded: bool,
+    /// Whether any cell may be ambiguous ([`CornerSigns::maybe_ambiguous`]).
+    pub maybe_ambiguous: bool,
 }
 
 /// A cell whose vertex is still to be solved.
@@ -51,7 +51,8 @@ struct LeafVertexSolver<'a> {
 }
 
 impl LeafVertices {
-    /// Fills in the cases and the vertices of the cells of one leaf, and returns what else is found.
+    /// Fills in the cases and the vertices of the cells of one leaf, and returns what else is
+    /// found.
     pub fn place(
         context: &CellContext<'_>,
         leaf: LeafId,
@@ -67,7 +68,7 @@ impl LeafVertices {
         let table = CaseTable::get();
         let first_vertex = context.numbers.vertex_range(leaf).start as u32;
         let (batch, pending) = (QefBatch::default(), [None; LANES]);
-        let found = LeafVertices { is_crowded: corners.crowded() != [0; 8], ..found };
+        let found = LeafVertices { maybe_ambiguous: corners.maybe_ambiguous() != [0; 8], ..found };
         let mut solver = LeafVertexSolver { context, leaf, crossings, vertices, batch, pending, found };
         let mut first = 0;
         for (cell, number) in cases.iter_mut().zip(bits(context.numbers.active(leaf))) {
@@ -109,7 +110,8 @@ impl LeafVertexSolver<'_> {
                 self.finish();
             }
         } else {
-            // Vertices are numbered in the order of their cells, and features must be found in that order.
+            // Vertices are numbered in the order of their cells, and features must be found in that
+            // order.
             self.finish();
             self.found.several_sheets += 1;
             for sheet in 0..cell.case.sheets().len() {

@@ -1,4 +1,5 @@
-//! The vertices: of each sheet within its cell, and of faces where a connection would get in another sheet's way.
+//! The vertices: of each sheet within its cell, and of faces where a connection would get in
+//! another sheet's way.
 
 mod cell_vertex;
 mod cells;

@@ -1,4 +1,5 @@
-//! The first steps of every contour: cells numbered, and a vertex for each sheet and each marked face.
+//! The first steps of every contour: cells numbered, and a vertex for each sheet and each marked
+//! face.
 
 use super::cells::{CellCase, Cells};
 use super::context::CellContext;
@@ -38,12 +39,12 @@ pub struct PlacedVertices<'a> {
 
 /// Numbers the cells, places all vertices, and hands both to `finish` on the run's pool.
 ///
-/// The phase that `finish` gets is advanced by one for each leaf with active cells. It expects one more
-/// for each leaf with crossings.
+/// The phase that `finish` gets is advanced by one for each leaf with active cells. It expects one
+/// more for each leaf with crossings.
 ///
 /// # Errors
-/// When the run is cancelled, there are too many vertices, the lattice is too far from the origin for
-/// the precision, or `finish` fails.
+/// When the run is cancelled, there are too many vertices, the lattice is too far from the origin
+/// for the precision, or `finish` fails.
 ///
 /// # Panics
 /// When `crossings` does not belong to `signs`.
@@ -90,8 +91,8 @@ fn place_cell_vertices<'a>(
 ) -> Result<CellVertices<'a>, Cancelled> {
     let CellContext { signs, numbers, surface, .. } = context;
     let mut cases: Vec<CellCase> = bytemuck::zeroed_vec(numbers.len());
-    // Face and edge vertices come after these, and the whole need not move for those few. Room that is
-    // not used is not touched.
+    // Face and edge vertices come after these, and the whole need not move for those few. Room that
+    // is not used is not touched.
     let count = numbers.vertices() as usize;
     let mut vertices = vec![[0.0; 3]; count + count / SPARE];
     vertices.truncate(count);
@@ -111,12 +112,12 @@ fn place_cell_vertices<'a>(
         })
         .collect::<Result<_, Cancelled>>()?;
     let mut statistics = ContourStatistics::default();
-    let mut crowded = vec![false; signs.len()];
+    let mut maybe_ambiguous = vec![false; signs.len()];
     let mut relocations = vec![Vec::new(); signs.len()];
     let mut features = Vec::with_capacity(placed.iter().map(|own| own.features.len()).sum());
     let mut jumps = Vec::new();
     for (own, &leaf) in placed.into_iter().zip(&leaves) {
-        crowded[leaf.0 as usize] = own.is_crowded;
+        maybe_ambiguous[leaf.0 as usize] = own.maybe_ambiguous;
         relocations[leaf.0 as usize] = own.relocations;
         features.extend(own.features);
         jumps.extend(own.jumps);
@@ -132,5 +133,5 @@ fn place_cell_vertices<'a>(
         vertices.len(),
         surface.map_or(CurvatureBound::UNKNOWN, CurvatureBound::of),
     );
-    Ok((Cells::new(context, cases, crowded, features, jumps), vertices, relocations, statistics))
+    Ok((Cells::new(context, cases, maybe_ambiguous, features, jumps), vertices, relocations, statistics))
 }

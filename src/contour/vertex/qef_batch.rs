@@ -1,6 +1,7 @@
 //! The minimisers of cells that see one smooth face of the surface, eight at a time. Most cells do.
 //!
-//! Normals n_i that differ little have their error function's matrix nearly in the frame of their mean v:
+//! Normals n_i that differ little have their error function's matrix nearly in the frame of their
+//! mean v:
 //!
 //! ```text
 //!          v   t        n_i = c_i v + t_i,  sum of t_i = 0
@@ -8,8 +9,8 @@
 //!     t  [ k   T ]      T: two by two, the spread of the normals;  k: of third order in it
 //! ```
 //!
-//! so the least point follows without an eigen decomposition: along v by a quotient, and in the plane across
-//! v by the two by two matrix, where its eigenvalues are above the [`CUTOFF`] of the
+//! so the least point follows without an eigen decomposition: along v by a quotient, and in the
+//! plane across v by the two by two matrix, where its eigenvalues are above the [`CUTOFF`] of the
 //! [`Qef`](crate::geom::quadric::Qef). Cells that are not smooth are left to
 //! [`cell_vertex`](super::cell_vertex).
 
@@ -26,11 +27,12 @@ pub const LANES: usize = 8;
 /// The most crossings of a cell.
 const MAX_CROSSINGS: usize = 12;
 
-/// The largest sum of the differences of a cell's squared normals from one. What is not a number differs.
+/// The largest sum of the differences of a cell's squared normals from one. What is not a number
+/// differs.
 const UNIT_TOLERANCE: f64 = 1e-3;
 
-/// The crossings with one number of several cells: points in coordinates 0 to 1 of their cells, and unit
-/// normals. Zero beyond the last crossing of a cell, which adds nothing anywhere.
+/// The crossings with one number of several cells: points in coordinates 0 to 1 of their cells, and
+/// unit normals. Zero beyond the last crossing of a cell, which adds nothing anywhere.
 #[derive(Clone, Copy, Debug, Default)]
 struct Slot {
     points: [[f64; LANES]; 3],
@@ -201,8 +203,8 @@ struct PlaneEquations<S: Simd> {
 }
 
 impl<S: Simd> PlaneEquations<S> {
-    /// Returns the larger eigenvalue, and the solution along the eigenvectors whose eigenvalues are above
-    /// `cutoff`, zero along the others.
+    /// Returns the larger eigenvalue, and the solution along the eigenvectors whose eigenvalues are
+    /// above `cutoff`, zero along the others.
     #[inline(always)]
     fn least(self, simd: S, cutoff: F64s<S>) -> (F64s<S>, F64s<S>, F64s<S>) {
         let PlaneEquations { ee, ef, ff, re, rf } = self;

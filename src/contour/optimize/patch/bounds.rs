@@ -24,7 +24,8 @@ impl Bounds {
     /// The box around a triangle.
     #[inline(always)]
     pub fn of_triangle([a, b, c]: [Point; 3]) -> Bounds {
-        // Without regard to what is not a number: comparisons that are faster than those of `f64::min`.
+        // Without regard to what is not a number: comparisons that are faster than those of
+        // `f64::min`.
         let least = |x: f64, y: f64| if x < y { x } else { y };
         let largest = |x: f64, y: f64| if x > y { x } else { y };
         Bounds {

@@ -8,10 +8,11 @@
 //!      .---d---.            .---a---.      (d keeps its own place)
 //! ```
 //!
-//! The link condition: the neighbours that the two ends have in common are c and d alone, and the component is no
-//! tetrahedron. Then the fans of a and of b, each without the two triangles of the edge, are two fans that meet in c
-//! and in d only, and close to one fan around the merged vertex; c and d lose a triangle of four or more; no two
-//! triangles become the same. The mesh stays closed and 2-manifold, and keeps its genus.
+//! The link condition: the neighbours that the two ends have in common are c and d alone, and the
+//! component is no tetrahedron. Then the fans of a and of b, each without the two triangles of the
+//! edge, are two fans that meet in c and in d only, and close to one fan around the merged vertex;
+//! c and d lose a triangle of four or more; no two triangles become the same. The mesh stays closed
+//! and 2-manifold, and keeps its genus.
 
 use super::triangle::PatchTriangle;
 use super::{Patch, Point};
@@ -25,8 +26,9 @@ struct Merged {
 }
 
 impl Patch {
-    /// Merges the ends of an edge into its first one, at `to`, which must be rounded, if the mesh stays embedded, and
-    /// closed and 2-manifold. The second one and the two triangles of the edge are gone then.
+    /// Merges the ends of an edge into its first one, at `to`, which must be rounded, if the mesh
+    /// stays embedded, and closed and 2-manifold. The second one and the two triangles of the edge
+    /// are gone then.
     pub fn try_collapse(&mut self, edge: [u32; 2], to: Point) -> bool {
         let Some(Merged { star, gone }) = self.merged(edge, to) else { return false };
         if !self.accepts(&star, &gone) {
@@ -44,8 +46,8 @@ impl Patch {
         true
     }
 
-    /// The triangles that the vertex would have after [`try_collapse`](Self::try_collapse); `None` where the link
-    /// condition does not hold.
+    /// The triangles that the vertex would have after [`try_collapse`](Self::try_collapse); `None`
+    /// where the link condition does not hold.
     pub fn star_if_collapsed(&self, edge: [u32; 2], to: Point) -> Option<Vec<PatchTriangle>> {
         Some(self.merged(edge, to)?.star.into_iter().map(|(_, t)| t).collect())
     }

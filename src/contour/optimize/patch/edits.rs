@@ -26,8 +26,8 @@ impl Patch {
         true
     }
 
-    /// Puts a new vertex at `at`, which must be rounded, in place of a triangle's interior, if the mesh stays
-    /// embedded. Returns its number.
+    /// Puts a new vertex at `at`, which must be rounded, in place of a triangle's interior, if the
+    /// mesh stays embedded. Returns its number.
     pub fn try_split_face(&mut self, n: usize, at: Point) -> Option<u32> {
         let t = self.triangles[n];
         let new = self.new_vertex()?;
@@ -42,8 +42,8 @@ impl Patch {
         self.insert(&parts, new, at)
     }
 
-    /// Puts a new vertex at `at`, which must be rounded, in place of an edge's interior, if the mesh stays
-    /// embedded. Returns its number.
+    /// Puts a new vertex at `at`, which must be rounded, in place of an edge's interior, if the
+    /// mesh stays embedded. Returns its number.
     pub fn try_split_edge(&mut self, edge: &PatchEdge, at: Point) -> Option<u32> {
         let PatchEdge { triangles: [first, second], a, b, c, d } = *edge;
         let new = self.new_vertex()?;

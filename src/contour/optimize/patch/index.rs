@@ -1,4 +1,5 @@
-//! Which triangles of a patch are at a vertex, and which are near a place, without a look at all of them.
+//! Which triangles of a patch are at a vertex, and which are near a place, without a look at all of
+//! them.
 
 use super::Bounds;
 
@@ -8,10 +9,11 @@ const NONE: u32 = u32::MAX;
 /// Slots that most patches have room in: they have some hundred vertices.
 const USUAL: usize = 1024;
 
-/// Corners of triangles by vertex. A corner's number is three times that of its triangle and its place there.
+/// Corners of triangles by vertex. A corner's number is three times that of its triangle and its
+/// place there.
 ///
-/// Each vertex has a chain of its corners; the chains' beginnings are in a table with open addressing, since the vertices
-/// of a patch are few numbers out of many.
+/// Each vertex has a chain of its corners; the chains' beginnings are in a table with open
+/// addressing, since the vertices of a patch are few numbers out of many.
 #[derive(Debug)]
 pub struct Corners {
     /// A vertex, and the first of its corners; [`NONE`] where the slot is free.
@@ -187,7 +189,8 @@ mod tests {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             (state >> 8) % below
         };
-        // Numbers as far apart as those of old and new vertices, and more of them than the table has slots.
+        // Numbers as far apart as those of old and new vertices, and more of them than the table
+        // has slots.
         let vertex = |n: u32| if n.is_multiple_of(2) { n } else { n | 1 << 31 };
         for _ in 0..5_000 {
             let first = random(1_500);

@@ -1,14 +1,15 @@
 //! A part of a finished mesh that can be changed without making it intersect itself.
 //!
-//! The mesh is embedded: triangles meet in the vertices and edges that they share, and nowhere else. A vertex is
-//! moved, a triangle or an edge split, an edge flipped or merged to a vertex, only if the triangles that this changes
-//! meet no other triangle and not each other, decided by exact predicates on the coordinates as they will be written.
-//! Then the mesh is embedded afterwards, whatever it was changed for; and since neighbours stay neighbours (`edits`)
-//! or meet under the link condition (`collapse`), it stays closed and 2-manifold.
+//! The mesh is embedded: triangles meet in the vertices and edges that they share, and nowhere
+//! else. A vertex is moved, a triangle or an edge split, an edge flipped or merged to a vertex,
+//! only if the triangles that this changes meet no other triangle and not each other, decided by
+//! exact predicates on the coordinates as they will be written. Then the mesh is embedded
+//! afterwards, whatever it was changed for; and since neighbours stay neighbours (`edits`) or meet
+//! under the link condition (`collapse`), it stays closed and 2-manifold.
 //!
-//! All triangles that a change could meet must be in the patch: it holds every triangle whose box meets its
-//! bounds, and no change reaches beyond them. Triangles are looked for by the leaf that they belong to, so each of
-//! them also stays near that one ([`PatchTriangle::home`]).
+//! All triangles that a change could meet must be in the patch: it holds every triangle whose box
+//! meets its bounds, and no change reaches beyond them. Triangles are looked for by the leaf that
+//! they belong to, so each of them also stays near that one ([`PatchTriangle::home`]).
 
 mod bounds;
 mod collapse;
@@ -57,8 +58,8 @@ impl Patch {
         }
     }
 
-    /// Adds triangle `number` of the mesh, of the home with number `home`, if its box meets the bounds. All such triangles must
-    /// be added before the first change.
+    /// Adds triangle `number` of the mesh, of the home with number `home`, if its box meets the
+    /// bounds. All such triangles must be added before the first change.
     #[inline]
     pub fn add(&mut self, number: usize, vertices: &[u32; 3], corners: &[Point; 3], home: u8) {
         let around = Bounds::of_triangle(*corners);

@@ -26,7 +26,8 @@ pub const OWN_HOME: u8 = 13;
 pub type Homes = [Bounds; 27];
 
 impl PatchTriangle {
-    /// The triangle with vertex `old` replaced by `new` at a position; the same if it is none of its vertices.
+    /// The triangle with vertex `old` replaced by `new` at a position; the same if it is none of
+    /// its vertices.
     pub fn with(mut self, old: u32, new: u32, at: Point) -> PatchTriangle {
         if let Some(k) = self.place(old) {
             self.vertices[k] = new;
@@ -58,7 +59,8 @@ impl PatchTriangle {
 #[derive(Clone, Copy, Debug)]
 pub struct PatchEdge {
     pub(super) triangles: [usize; 2],
-    /// The ends of the edge and the vertices opposite to it in the first and in the second triangle.
+    /// The ends of the edge and the vertices opposite to it in the first and in the second
+    /// triangle.
     pub a: (u32, Point),
     /// See `a`.
     pub b: (u32, Point),
