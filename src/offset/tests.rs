@@ -171,23 +171,18 @@ fn plain_bisection_finds_the_roots_of_the_hybrid_method() {
 fn every_closed_model_gives_a_clean_mesh() {
     for shape in shapes::ALL.iter().filter(|s| s.volume.is_some()) {
         let mesh = (shape.make)(4);
+        // Nowhere is so little left that the lattice does not see it.
         for fraction in [0.08, 0.01, 0.0, -0.01] {
             let settings = OffsetSettings {
                 distance: Length::DiagonalFraction(fraction),
                 voxel: VoxelSize::Resolution(40),
                 ..OffsetSettings::default()
             };
-            match offset(&mesh, &settings, &run(2)) {
-                Ok(result) => {
-                    assert!(result.statistics.contour.triangles > 100, "{}", shape.name);
-                    let audit = audit(&result.mesh);
-                    assert!(audit.is_sound(), "{} {fraction}: {audit:?}", shape.name);
-                }
-                Err(OffsetError::Empty(empty)) => {
-                    assert!(fraction < 0.0, "{} {fraction}: {empty}", shape.name)
-                }
-                Err(error) => panic!("{} {fraction}: {error}", shape.name),
-            }
+            let result = offset(&mesh, &settings, &run(2));
+            let result = result.unwrap_or_else(|error| panic!("{} {fraction}: {error}", shape.name));
+            assert!(result.statistics.contour.triangles > 100, "{}", shape.name);
+            let audit = audit(&result.mesh);
+            assert!(audit.is_sound(), "{} {fraction}: {audit:?}", shape.name);
         }
     }
 }
@@ -199,12 +194,11 @@ fn zero_distance_keeps_a_box_sharp() {
     assert!(audit(&result.mesh).is_sound());
     let topology = Topology::new(&mesh);
     let distance = SignedDistance::new(&mesh, &topology);
-    let errors = result.mesh.vertices.iter().map(|&v| distance.at(v.into(), 0).distance.abs() / 0.1);
-    let errors: Vec<f64> = errors.collect();
-    // A vertex whose crease passes outside its cell stays in the cell, and misses the crease.
-    let exact = errors.iter().filter(|&&e| e < 1e-5).count();
-    assert!(exact as f64 > 0.95 * errors.len() as f64, "{exact} of {}", errors.len());
-    assert!(errors.iter().all(|&e| e < 0.5), "{errors:?}");
+    // Also the vertices that the lattice put beside an edge are on it.
+    for &v in &result.mesh.vertices {
+        let error = distance.at(v.into(), 0).distance.abs() / 0.1;
+        assert!(error < 1e-6, "{v:?} is off by {error} voxels");
+    }
 }
 
 #[test]

@@ -71,10 +71,11 @@ fn errors_are_small_and_relative() {
     for row in &report.rows {
         let [mean, max] = ["avg / h", "max / h"].map(|name| row[column(&report, name)].clone());
         let (Cell::Number(mean), Cell::Number(max)) = (mean, max) else { continue };
-        assert!(0.0 < mean && mean < 0.1 && mean < max && max < 2.0, "{row:?}");
+        // The largest are 0.022 and 0.56: 32 voxels along a side are coarse.
+        assert!(0.0 < mean && mean < 0.03 && mean < max && max < 0.6, "{row:?}");
         measured += 1;
     }
-    assert!(measured >= 8, "{measured}");
+    assert_eq!(measured, 12);
 }
 
 #[test]

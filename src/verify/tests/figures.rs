@@ -147,7 +147,7 @@ fn the_offset_has_no_errors_but_those_it_names() {
         let report = judge(&input, &output, &settings);
         assert!(report.is_kept(), "{distance}: {:?}", report.broken);
         assert!(report.distance.surface.mean.voxels.unwrap() < 0.01);
-        assert!(report.creases.length > 1.0 && report.creases.share.unwrap() > 0.8, "{:?}", report.creases);
+        assert!(report.creases.length > 1.0 && report.creases.share.unwrap() > 0.99, "{:?}", report.creases);
     }
 }
 
