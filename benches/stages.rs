@@ -2,15 +2,17 @@
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main};
-use exocarp::band::{self, LeafBatch};
-use exocarp::distance::SignedDistance;
+use exocarp::internals::band::{self, LeafBatch};
 use exocarp::internals::band_settings;
-use exocarp::mesh::{Topology, TriMesh, shapes};
-use exocarp::offset::{BandOptions, EngineTimes, OffsetSettings, offset, offset_band};
-use exocarp::quantity::{Length, VoxelSize};
-use exocarp::run::{Cancelled, RunSettings};
-use exocarp::ssvh;
+use exocarp::internals::distance::SignedDistance;
+use exocarp::internals::mesh::Topology;
+use exocarp::internals::offset::EngineTimes;
+use exocarp::internals::ssvh;
 use exocarp::vdb::{ClosestGrid, SurfaceGrid};
+use exocarp::{
+    BandOptions, Cancelled, Length, OffsetSettings, RunSettings, TriMesh, VoxelSize, offset, offset_band,
+    shapes,
+};
 use std::hint::black_box;
 use std::time::Duration;
 

@@ -1,16 +1,13 @@
 //! Offsets a generated model outward and inward and saves the results: `cargo run --release
 //! --example offset_model`.
 
-use exocarp::mesh::{measure, shapes};
-use exocarp::offset::{OffsetSettings, offset};
-use exocarp::quantity::{Length, VoxelSize};
-use exocarp::run::RunSettings;
+use exocarp::{Length, OffsetSettings, RunSettings, VoxelSize, offset, shapes};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = shapes::carved_cube(shapes::DEFAULT_DETAIL);
     let run = RunSettings::with_threads(0)?;
     std::fs::create_dir_all("out")?;
-    println!("model: volume {:.4}", measure::signed_volume(&model));
+    println!("model: volume {:.4}", model.signed_volume());
     for (name, distance) in [("grown", 0.1), ("shrunk", -0.1)] {
         let settings = OffsetSettings {
             distance: Length::Units(distance),
@@ -23,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!(
             "{path}: {} triangles, volume {:.4}, {:.2} s",
             result.mesh.triangles.len(),
-            measure::signed_volume(&result.mesh),
+            result.mesh.signed_volume(),
             result.statistics.times.total(),
         );
     }

@@ -1,10 +1,9 @@
 //! Watches an offset and stops it after a while: `cargo run --release --example
 //! progress_and_cancel`.
 
-use exocarp::mesh::shapes;
-use exocarp::offset::{OffsetError, OffsetSettings, offset};
-use exocarp::quantity::VoxelSize;
-use exocarp::run::{CancelToken, Phase, Progress, RunSettings};
+use exocarp::{
+    CancelToken, OffsetError, OffsetSettings, Phase, Progress, RunSettings, VoxelSize, offset, shapes,
+};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 

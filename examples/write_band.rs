@@ -1,11 +1,8 @@
 //! Writes the narrow band of an offset as a level set for any OpenVDB program: `cargo run --release
 //! --example write_band`.
 
-use exocarp::mesh::shapes;
-use exocarp::offset::{OffsetSettings, offset_band};
-use exocarp::quantity::{Length, VoxelSize};
-use exocarp::run::RunSettings;
-use exocarp::vdb::{self, VdbOptions};
+use exocarp::vdb::{FileInfo, VdbOptions};
+use exocarp::{Length, OffsetSettings, RunSettings, VoxelSize, offset_band, shapes};
 use std::path::Path;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -17,7 +14,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     // The band alone: `offset` makes the mesh as well.
     let result = offset_band(&model, &settings, &RunSettings::with_threads(0)?)?;
-    let band = &result.band;
 
     std::fs::create_dir_all("out")?;
     let path = Path::new("out/example-band.vdb");
@@ -26,9 +22,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         unit: Some("mm".into()),
         ..VdbOptions::default()
     };
-    vdb::write(path, &band.surface, band.closest.as_ref(), &options)?;
+    result.band.save(path, &options)?;
 
-    for grid in vdb::info(path)?.grids {
+    for grid in FileInfo::read(path)?.grids {
         println!("{}: {} {}, {} active voxels", path.display(), grid.class, grid.name, grid.active_voxels);
     }
     Ok(())

@@ -95,10 +95,14 @@ impl CancelToken {
 /// wait for the last part: with two threads for up to a tenth of the loop.
 pub const SHARE: usize = 64;
 
-/// Thread pool, cancel token and progress sink of a run.
-#[derive(Clone)]
+/// Thread pool, cancel token and progress receiver of a run.
+///
+/// Nothing in it changes a result: the same input gives the same bytes for every number of threads.
+/// The default runs in rayon's current pool, which is that of the calling program.
+#[derive(Clone, Default)]
 pub struct RunSettings {
-    pool: Arc<rayon::ThreadPool>,
+    /// `None` for the current pool of rayon.
+    pool: Option<Arc<rayon::ThreadPool>>,
     cancel: CancelToken,
     progress: Option<Arc<dyn Progress>>,
 }
@@ -112,7 +116,7 @@ pub struct ThreadError {
 }
 
 impl RunSettings {
-    /// A run with `threads` worker threads; 0 means one per available core.
+    /// Returns a run with `threads` worker threads of its own; 0 means one per available core.
     ///
     /// # Errors
     /// When the operating system refuses the threads.
@@ -122,16 +126,29 @@ impl RunSettings {
             .thread_name(|i| format!("exocarp-{i}"))
             .build()
             .map_err(|source| ThreadError { threads, source })?;
-        Ok(RunSettings { pool: Arc::new(pool), cancel: CancelToken::default(), progress: None })
+        Ok(RunSettings::in_pool(Arc::new(pool)))
     }
 
-    /// Returns this run, stopped by `cancel`.
+    /// Returns a run with a single worker thread.
+    ///
+    /// # Errors
+    /// When the operating system refuses the thread.
+    pub fn serial() -> Result<Self, ThreadError> {
+        RunSettings::with_threads(1)
+    }
+
+    /// Returns a run in a thread pool that may serve other work, too.
+    pub fn in_pool(pool: Arc<rayon::ThreadPool>) -> Self {
+        RunSettings { pool: Some(pool), ..RunSettings::default() }
+    }
+
+    /// Returns the same run, stopped by `cancel`.
     pub fn with_cancel(mut self, cancel: CancelToken) -> Self {
         self.cancel = cancel;
         self
     }
 
-    /// Returns this run, reporting to `progress`.
+    /// Returns the same run, reporting to `progress`.
     pub fn with_progress(mut self, progress: Arc<dyn Progress>) -> Self {
         self.progress = Some(progress);
         self
@@ -139,7 +156,7 @@ impl RunSettings {
 
     /// The number of worker threads.
     pub fn threads(&self) -> usize {
-        self.pool.current_num_threads()
+        self.pool.as_ref().map_or_else(rayon::current_num_threads, |pool| pool.current_num_threads())
     }
 
     /// The token that stops this run.
@@ -154,7 +171,11 @@ impl RunSettings {
 
     /// Runs `f` inside the thread pool, so that rayon's parallel iterators in it use this run's threads.
     pub fn install<R: Send>(&self, f: impl FnOnce() -> R + Send) -> R {
-        self.pool.install(f)
+        match &self.pool {
+            Some(pool) => pool.install(f),
+            // Whatever is parallel in it goes to rayon's current pool by itself.
+            None => f(),
+        }
     }
 
     /// Begins a phase of `total` steps; it ends when the returned guard is dropped.

@@ -126,15 +126,15 @@ fn models_are_listed_and_written() {
     let list = exocarp(&["model"]);
     assert_eq!(list.code, 0);
     let dir = tempfile::tempdir().unwrap();
-    for shape in exocarp::mesh::shapes::ALL {
+    for shape in exocarp::shapes::ALL {
         assert!(list.stdout.contains(shape.name), "{}", shape.name);
         let path = dir.path().join(format!("{}.ply", shape.name));
         let model = exocarp(&["model", shape.name, "-o", path.to_str().unwrap(), "--detail", "4", "--f64"]);
         assert_eq!((model.code, model.stderr.as_str()), (0, ""), "{}", shape.name);
-        let mesh = exocarp::mesh::TriMesh::load(&path).unwrap();
+        let mesh = exocarp::TriMesh::load(&path).unwrap();
         assert_eq!(mesh, (shape.make)(4), "{}", shape.name);
     }
-    assert_eq!(names(dir.path()).len(), exocarp::mesh::shapes::ALL.len());
+    assert_eq!(names(dir.path()).len(), exocarp::shapes::ALL.len());
 }
 
 #[test]

@@ -3,11 +3,10 @@
 mod common;
 
 use common::exocarp;
-use exocarp::io::{SaveOptions, load, save};
-use exocarp::mesh::{TriMesh, clean, shapes};
-use exocarp::quantity::Precision;
-use exocarp::run::RunSettings;
+use exocarp::internals::io::load;
+use exocarp::io::{SaveOptions, save};
 use exocarp::verify::soundness;
+use exocarp::{Precision, RunSettings, TriMesh, clean, shapes};
 use std::path::{Path, PathBuf};
 
 /// A patch of 2 x 2 squares that is bent like a pillow.

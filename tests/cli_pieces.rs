@@ -4,7 +4,7 @@
 mod common;
 
 use common::{exocarp, names};
-use exocarp::mesh::{TriMesh, shapes};
+use exocarp::{TriMesh, shapes};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,74 +1,99 @@
 //! The rooms' order: `src/lib.rs` lists the modules so that each imports only from those above it.
 //!
-//! `error`, `run` and `geom` lie under all. One arrow runs back by intention: `error` names the
-//! error of every stage. Tests beside the code may import from anywhere; the program in `src/cli`
-//! uses the public API only.
+//! Nothing is exempt: the umbrella over all errors comes last, so that no room can import it, and
+//! so does the door through which the program, benches and tests reach the rooms. Tests beside the
+//! code may import from anywhere.
 
 use std::fs;
 use std::path::{Path, PathBuf};
-
-/// Lie under all others, and import from one another only.
-const BASE: [&str; 4] = ["error", "geom", "quantity", "run"];
 
 #[test]
 fn no_arrow_runs_back() {
     let order = modules();
     assert!(order.len() > 10, "too few modules were found in lib.rs: {order:?}");
-    let rank = |module: &str| order.iter().position(|m| m == module);
     let (mut arrows, mut wrong) = (0, Vec::new());
     for path in sources(Path::new("src")) {
         let Some(room) = room(&path) else { continue };
-        let Some(own) = rank(&room) else {
-            wrong.push(format!("{}: lib.rs does not list {room}", path.display()));
-            continue;
-        };
-        for (line, used) in used_modules(&fs::read_to_string(&path).unwrap()) {
-            arrows += 1;
-            let place = format!("{}:{line}", path.display());
-            match rank(&used) {
-                None => wrong.push(format!("{place}: lib.rs does not list {used}")),
-                Some(_) if BASE.contains(&used.as_str()) => {}
-                Some(other) if other > own => {
-                    wrong.push(format!("{place}: {room} uses {used}, which comes after it"));
-                }
-                Some(_) => {}
-            }
-        }
+        let text = fs::read_to_string(&path).unwrap();
+        let (count, faults) = backward(&order, &room, &text);
+        arrows += count;
+        wrong.extend(faults.into_iter().map(|fault| format!("{}:{fault}", path.display())));
     }
     assert!(arrows > 20, "only {arrows} imports were found");
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
 #[test]
-fn the_program_uses_the_public_api_only() {
-    for path in sources(Path::new("src/cli")) {
-        let text = fs::read_to_string(&path).unwrap();
-        assert!(
-            used_modules(&text).is_empty(),
-            "{} uses crate::, which is the program there",
-            path.display()
-        );
+fn arrows_that_run_back_are_found() {
+    let order: Vec<String> = ["mesh", "band", "error"].map(String::from).into();
+    let faults = |room: &str, text: &str| backward(&order, room, text).1.len();
+    assert_eq!(faults("band", "use crate::mesh::TriMesh;\nuse crate::band::Ijk;"), 0);
+    assert_eq!(faults("mesh", "use crate::band::Ijk;\nuse crate::{error::Error, mesh};"), 2);
+    assert_eq!(faults("band", "use crate::error::Error;"), 1);
+    // The root's names are for users.
+    assert_eq!(faults("band", "use crate::Precision;"), 1);
+    assert_eq!(faults("unlisted", "use crate::mesh::TriMesh;"), 1);
+}
+
+#[test]
+fn examples_need_public_names_only() {
+    let examples = sources(Path::new("examples"));
+    assert!(!examples.is_empty());
+    for path in examples.iter().map(PathBuf::as_path).chain([Path::new("README.md"), Path::new("src/lib.rs")])
+    {
+        let text = fs::read_to_string(path).unwrap();
+        assert!(!text.contains("exocarp::internals"), "{} uses what users cannot rely on", path.display());
     }
 }
 
-/// The modules of the library in the order of lib.rs, those of the base first.
-fn modules() -> Vec<String> {
-    let text = fs::read_to_string("src/lib.rs").unwrap();
-    let listed =
-        text.lines().filter_map(|l| Some(l.strip_prefix("pub mod ")?.strip_suffix(';')?.to_string()));
-    let mut order: Vec<String> = listed.collect();
-    order.sort_by_key(|m| !BASE.contains(&m.as_str()));
-    order
+#[test]
+fn sentences_of_the_library_name_no_option() {
+    let is_option = |text: &str| {
+        text.split_once("--").is_some_and(|(_, after)| after.starts_with(|c: char| c.is_ascii_lowercase()))
+    };
+    assert!(is_option("or raise --max-memory") && !is_option("a -- b") && !is_option("--"));
+    for path in sources(Path::new("src")) {
+        // Comparisons start the program, with its options.
+        let Some(room) = room(&path).filter(|room| room != "compare") else { continue };
+        let text = fs::read_to_string(&path).unwrap();
+        for (number, line) in text.lines().enumerate() {
+            let code = line.split("//").next().unwrap_or_default();
+            assert!(!is_option(code), "{}:{}: {room} names an option", path.display(), number + 1);
+        }
+    }
 }
 
-/// The top-level module that a file belongs to; none for lib.rs, the program, the tests, and
-/// `error`.
+/// The number of imports in a file of `room`, and those from rooms that come after it.
+fn backward(order: &[String], room: &str, text: &str) -> (usize, Vec<String>) {
+    let rank = |module: &str| order.iter().position(|m| m == module);
+    let Some(own) = rank(room) else { return (0, vec![format!("1: lib.rs does not list {room}")]) };
+    let used = used_modules(text);
+    let fault = |(line, used): &(usize, String)| match rank(used) {
+        None => Some(format!("{line}: lib.rs does not list {used}")),
+        Some(other) if other > own => Some(format!("{line}: {room} uses {used}, which comes after it")),
+        Some(_) => None,
+    };
+    (used.len(), used.iter().filter_map(fault).collect())
+}
+
+/// The modules of the library in the order of lib.rs.
+fn modules() -> Vec<String> {
+    let text = fs::read_to_string("src/lib.rs").unwrap();
+    let module = |line: &str| {
+        let line = line.strip_prefix("pub ").unwrap_or(line);
+        Some(line.strip_prefix("mod ")?.strip_suffix(';')?.to_string())
+    };
+    text.lines().filter_map(module).collect()
+}
+
+/// The top-level module that a file belongs to; none for lib.rs, the program, the tests, and what
+/// stands above all rooms.
 fn room(path: &Path) -> Option<String> {
     let inside = path.strip_prefix("src").unwrap();
     let parts: Vec<&str> = inside.iter().map(|p| p.to_str().unwrap()).collect();
     let first = parts[0].trim_end_matches(".rs");
     let is_test = parts.iter().any(|p| matches!(*p, "tests" | "tests.rs"));
-    (!is_test && !["lib", "main", "cli", "error", "internals"].contains(&first)).then(|| first.to_string())
+    (!is_test && !["lib", "main", "cli", "internals"].contains(&first)).then(|| first.to_string())
 }
 
 /// Each `crate::module` outside of comments and before the tests at the end, with its line.

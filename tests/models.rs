@@ -4,12 +4,12 @@
 mod common;
 
 use common::models::path;
-use exocarp::io::{SaveOptions, load, save};
-use exocarp::mesh::{Topology, clean};
-use exocarp::offset::{OffsetError, OffsetSettings, OpenInput, offset};
-use exocarp::quantity::{Length, Precision, VoxelSize};
-use exocarp::run::RunSettings;
+use exocarp::clean;
+use exocarp::internals::io::load;
+use exocarp::internals::mesh::Topology;
+use exocarp::io::{SaveOptions, save};
 use exocarp::verify::{VerifySettings, soundness, verify};
+use exocarp::{Length, OffsetError, OffsetSettings, OpenInput, Precision, RunSettings, VoxelSize, offset};
 
 /// The models with their numbers of triangles in the file.
 const MODELS: [(&str, usize); 17] = [
@@ -105,7 +105,7 @@ fn offset_and_judge(name: &str) -> usize {
                     ..VerifySettings::default()
                 };
                 let report = verify(&mesh, &result.mesh, &settings, &run).unwrap();
-                let voxels = |length: exocarp::verify::ReportedLength| length.voxels.unwrap();
+                let voxels = |length: exocarp::internals::verify::ReportedLength| length.voxels.unwrap();
                 let (mean, max) = (voxels(report.distance.surface.mean), voxels(report.distance.max));
                 eprintln!("{what}: mean {mean:.4}, max {max:.3} voxels");
                 assert!(mean < MOST_MEAN_ERROR && max < MOST_ERROR, "{what}: {mean} {max}");

@@ -9,9 +9,9 @@ mod common;
 
 use common::exocarp;
 use common::random::Random;
+use exocarp::internals::mesh::Topology;
 use exocarp::io::{self, SaveOptions};
-use exocarp::mesh::{Topology, TriMesh, clean, shapes};
-use exocarp::quantity::Precision;
+use exocarp::{Precision, TriMesh, clean, shapes};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::fs;
 use std::path::Path;

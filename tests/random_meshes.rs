@@ -5,10 +5,10 @@ mod common;
 
 use common::random::Random;
 use common::small_meshes::{KINDS, small_mesh};
-use exocarp::io::{SaveOptions, load, save};
-use exocarp::quantity::Precision;
-use exocarp::run::RunSettings;
+use exocarp::internals::io::load;
+use exocarp::io::{SaveOptions, save};
 use exocarp::verify::soundness;
+use exocarp::{Precision, RunSettings};
 use std::path::Path;
 use std::process::{Command, Stdio};
 

@@ -1,12 +1,12 @@
 //! The promise holds on the coordinates in the file: meshes are written, read again and judged, for
 //! models of all sizes and far from the origin.
 
-use exocarp::io::{SaveOptions, load, save};
-use exocarp::mesh::{TriMesh, clean, shapes};
-use exocarp::offset::{OffsetError, OffsetSettings, offset};
-use exocarp::quantity::{Length, Precision, VoxelSize};
-use exocarp::run::RunSettings;
+use exocarp::internals::io::load;
+use exocarp::io::{SaveOptions, save};
 use exocarp::verify::soundness;
+use exocarp::{
+    Length, OffsetError, OffsetSettings, Precision, RunSettings, TriMesh, VoxelSize, clean, offset, shapes,
+};
 use glam::{DQuat, DVec3};
 
 fn run() -> RunSettings {

@@ -1,14 +1,12 @@
 //! Slabs against the whole: the same mesh, the same band, the same counts.
 
-use exocarp::lattice::LEAF_SIZE;
-use exocarp::mesh::{MeshChunk, TriMesh, shapes};
-use exocarp::offset::{
-    BandOptions, MeshSink, OffsetError, OffsetResult, OffsetSettings, OpenInput, Partition, SinkError,
-    StreamResult, offset, offset_streamed,
-};
-use exocarp::quantity::{Length, Precision, TileIndex, Tolerance, VoxelSize};
-use exocarp::run::RunSettings;
+use exocarp::internals::lattice::LEAF_SIZE;
 use exocarp::vdb::Band;
+use exocarp::{
+    BandOptions, Length, MeshChunk, MeshSink, OffsetError, OffsetResult, OffsetSettings, OpenInput,
+    Partition, Precision, RunSettings, SinkError, StreamResult, TileIndex, Tolerance, TriMesh, VoxelSize,
+    offset, offset_streamed, shapes,
+};
 
 fn run() -> RunSettings {
     RunSettings::with_threads(2).unwrap()
@@ -60,13 +58,19 @@ fn stretched(mut mesh: TriMesh) -> TriMesh {
 }
 
 /// Origins, values and active masks, and the inside in between.
-fn content(band: &Band) -> (Vec<exocarp::lattice::Ijk>, Vec<u32>, Vec<[u64; 8]>, Vec<bool>) {
+fn content(band: &Band) -> (Vec<exocarp::internals::lattice::Ijk>, Vec<u32>, Vec<[u64; 8]>, Vec<bool>) {
     let origins = band.surface.leaf_origins();
     let mut values = vec![0.0; origins.len() * LEAF_SIZE];
     let mut active = vec![[0; 8]; origins.len()];
     band.surface.read_leaves(0, &mut values, &mut active).unwrap();
     let grid: Vec<_> = (0..40 * 40 * 40)
-        .map(|n| exocarp::lattice::Ijk::new(8 * (n / 1600 - 20), 8 * (n / 40 % 40 - 20), 8 * (n % 40 - 20)))
+        .map(|n| {
+            exocarp::internals::lattice::Ijk::new(
+                8 * (n / 1600 - 20),
+                8 * (n / 40 % 40 - 20),
+                8 * (n % 40 - 20),
+            )
+        })
         .collect();
     (origins, values.into_iter().map(f32::to_bits).collect(), active, band.surface.inside_at(&grid))
 }

@@ -3,12 +3,11 @@
 mod common;
 
 use common::thickened::check;
-use exocarp::mesh::measure::{area, signed_volume};
-use exocarp::mesh::{Topology, TriMesh, shapes};
-use exocarp::quantity::{Length, VoxelSize};
-use exocarp::run::RunSettings;
-use exocarp::thicken::{
-    PatchError, SectionNormals, Side, ThickenError, ThickenSettings, ThickenSettingsError, thicken,
+use exocarp::internals::mesh::Topology;
+use exocarp::internals::mesh::measure::{area, signed_volume};
+use exocarp::{
+    Length, PatchError, RunSettings, SectionNormals, Side, ThickenError, ThickenSettings,
+    ThickenSettingsError, TriMesh, VoxelSize, shapes, thicken,
 };
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};

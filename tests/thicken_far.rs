@@ -7,10 +7,9 @@ mod common;
 
 use common::random::Random;
 use common::thickened::{audit, check};
-use exocarp::mesh::TriMesh;
-use exocarp::quantity::{Length, Precision, VoxelSize};
-use exocarp::run::RunSettings;
-use exocarp::thicken::{Side, ThickenError, ThickenSettings, thicken};
+use exocarp::{
+    Length, Precision, RunSettings, Side, ThickenError, ThickenSettings, TriMesh, VoxelSize, thicken,
+};
 
 /// A case takes at most about this much: a second of work.
 const MEMORY: u64 = 100 << 20;

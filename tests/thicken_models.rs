@@ -5,10 +5,9 @@ mod common;
 
 use common::models::path;
 use common::thickened::check;
-use exocarp::io::load;
-use exocarp::mesh::{Topology, TriMesh, clean};
-use exocarp::quantity::{Length, VoxelSize};
-use exocarp::thicken::{Side, ThickenSettings};
+use exocarp::internals::io::load;
+use exocarp::internals::mesh::Topology;
+use exocarp::{Length, Side, ThickenSettings, TriMesh, VoxelSize, clean};
 use std::collections::BTreeSet;
 
 const PATCHES: [&str; 5] = ["head.off", "patch-01.off", "elephant-with-holes.off", "lion.off", "face.obj"];

@@ -3,10 +3,8 @@
 use super::examples;
 use super::format::{bytes, resolution, threads, voxel};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use exocarp::compare::Method;
-use exocarp::offset::OpenInput;
-use exocarp::quantity::{Length, TileIndex, Tolerance};
-use exocarp::thicken::{SectionNormals, Side, ThickenSettings};
+use exocarp::internals::compare::Method;
+use exocarp::{Length, OpenInput, SectionNormals, Side, ThickenSettings, TileIndex, Tolerance};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -52,7 +50,7 @@ pub(super) enum Command {
     /// Make the same offset with OpenVDB and MeshLib, and compare times, memory and errors
     Compare(CompareArguments),
     /// One run of one method, for `compare`
-    #[command(hide = true, name = exocarp::compare::WORKER)]
+    #[command(hide = true, name = exocarp::internals::compare::WORKER)]
     Worker(WorkerArguments),
     /// Write a generated model; without a name, list them
     Model(ModelArguments),
@@ -292,7 +290,7 @@ fn method(name: &str) -> Result<Method, String> {
     })
 }
 
-/// One run of one method: what `exocarp::compare::worker_arguments` makes.
+/// One run of one method: what `exocarp::internals::compare::worker_arguments` makes.
 #[derive(Args, Debug)]
 pub(super) struct WorkerArguments {
     #[arg(value_parser = method)]
@@ -353,7 +351,7 @@ pub(super) struct ModelArguments {
     #[arg(long, short, value_name = "OUTPUT", requires = "name")]
     pub output: Option<PathBuf>,
     /// Triangle sides per unit of length; the models are two to three units long
-    #[arg(long, value_name = "N", default_value_t = exocarp::mesh::shapes::DEFAULT_DETAIL)]
+    #[arg(long, value_name = "N", default_value_t = exocarp::shapes::DEFAULT_DETAIL)]
     // More would need gigabytes for a test model.
     #[arg(value_parser = clap::value_parser!(u32).range(2..=512))]
     pub detail: u32,
@@ -373,7 +371,7 @@ pub(super) struct PaperArguments {
     #[arg(long, value_name = "DIR")]
     pub models: Option<PathBuf>,
     /// Cells along the longest side, where the paper has 512
-    #[arg(long, value_name = "N", default_value_t = exocarp::paper::PUBLISHED_RESOLUTION)]
+    #[arg(long, value_name = "N", default_value_t = exocarp::internals::paper::PUBLISHED_RESOLUTION)]
     // Finer than the paper by four is the most that a table is of use for.
     #[arg(value_parser = clap::value_parser!(u32).range(8..=2048))]
     pub resolution: u32,
@@ -415,10 +413,10 @@ pub(super) struct VerifyArguments {
     #[arg(long, value_name = "E", allow_negative_numbers = true)]
     pub tolerance: Option<Length>,
     /// Samples, uniform over the area, up to 20 million
-    #[arg(long, value_name = "N", default_value_t = exocarp::verify::DEFAULT_SAMPLES)]
+    #[arg(long, value_name = "N", default_value_t = exocarp::internals::verify::DEFAULT_SAMPLES)]
     pub samples: usize,
     /// Seed of the samples
-    #[arg(long, value_name = "S", default_value_t = exocarp::verify::DEFAULT_SEED)]
+    #[arg(long, value_name = "S", default_value_t = exocarp::internals::verify::DEFAULT_SEED)]
     pub seed: u64,
     /// OUTPUT is a shell: INPUT's own surface and the offset surface. Measures its wall, which is to be T model
     /// units thick [default: |D|]

@@ -6,10 +6,10 @@ use super::files::{load_mesh, save_json, save_text};
 use super::offset::DEFAULT_RESOLUTION;
 use super::outputs;
 use super::session::{Session, Verbosity, print};
-use exocarp::compare::{
+use exocarp::VoxelSize;
+use exocarp::internals::compare::{
     CompareSettings, Comparison, Event, Job, Lost, Method, Programs, compare, report, text, work,
 };
-use exocarp::quantity::VoxelSize;
 use std::path::PathBuf;
 use std::time::Duration;
 

@@ -1,14 +1,11 @@
 //! Exit codes, and the error that each stands for.
 
-use exocarp::compare::CompareError;
-use exocarp::error::Error;
+use exocarp::internals::compare::CompareError;
+use exocarp::internals::paper::PaperError;
 use exocarp::io::{LoadError, MergeError, MergeErrorKind, SaveError, SaveErrorKind};
-use exocarp::offset::{InputError, OffsetError};
-use exocarp::paper::PaperError;
-use exocarp::run::{Cancelled, ThreadError};
-use exocarp::thicken::{ThickenError, ThickenSettingsError};
 use exocarp::vdb::VdbError;
 use exocarp::verify::VerifyError;
+use exocarp::{Cancelled, Error, InputError, OffsetError, ThickenError, ThickenSettingsError, ThreadError};
 use std::io::ErrorKind;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -5,10 +5,9 @@ use super::exit::{Exit, Failure, of_io};
 use super::session::Session;
 use super::statistics::Loading;
 use exocarp::io::{self, Format, SaveOptions, Tile};
-use exocarp::mesh::{CleanReport, TriMesh, clean};
-use exocarp::quantity::Precision;
-use exocarp::run::Phase;
-use exocarp::vdb::{self, Band, Compression, VdbError, VdbOptions, VdbPrecision};
+use exocarp::vdb::Band;
+use exocarp::vdb::{Compression, VdbError, VdbOptions, VdbPrecision};
+use exocarp::{CleanReport, Phase, Precision, TriMesh, clean};
 use serde::Serialize;
 use std::path::Path;
 
@@ -129,8 +128,8 @@ pub(super) fn save_vdb(
     session.run.check()?;
     let staged = session.staging.stage(output)?;
     let written = match tile {
-        Some(tile) => vdb::write_tile(&staged, band, tile, options),
-        None => vdb::write(&staged, &band.surface, band.closest.as_ref(), options),
+        Some(tile) => band.save_tile(&staged, tile, options),
+        None => band.save(&staged, options),
     };
     written.map_err(|error| match error {
         VdbError::Write { reason, source, .. } => {

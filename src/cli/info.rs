@@ -6,9 +6,10 @@ use super::files::{check_input, load_mesh};
 use super::format::{grouped, short};
 use super::session::{Session, print};
 use super::statistics::MeshFacts;
-use exocarp::mesh::{CleanReport, Defects, Topology, measure};
-use exocarp::run::Phase;
-use exocarp::vdb::{self, FileInfo, GridInfo};
+use exocarp::internals::mesh::{Defects, Topology, measure};
+use exocarp::internals::vdb::GridInfo;
+use exocarp::vdb::FileInfo;
+use exocarp::{CleanReport, Phase};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -16,7 +17,7 @@ pub(super) fn run(arguments: &InfoArguments, session: &Session) -> Result<(), Fa
     let is_vdb = arguments.file.extension().is_some_and(|e| e.eq_ignore_ascii_case("vdb"));
     let (text, json) = if is_vdb {
         check_input(&arguments.file)?;
-        let (info, _) = session.phase(Phase::Load, || Ok(vdb::info(&arguments.file)?))?;
+        let (info, _) = session.phase(Phase::Load, || Ok(FileInfo::read(&arguments.file)?))?;
         (vdb_text(&info), vdb_json(&info))
     } else {
         let facts = mesh_facts(arguments, session)?;

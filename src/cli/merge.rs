@@ -6,10 +6,9 @@ use super::files::{check_input, is_vdb};
 use super::format::{counted, grouped};
 use super::outputs;
 use super::session::Session;
-use exocarp::error::Error;
 use exocarp::io::merge_tiles;
-use exocarp::run::Phase;
 use exocarp::vdb::{VdbError, merge_bands};
+use exocarp::{Error, Phase};
 use std::path::Path;
 
 pub(super) fn run(arguments: &MergeArguments, session: &Session) -> Result<(), Failure> {

@@ -6,8 +6,8 @@ use super::files::{check_mesh_output, precision, save_mesh};
 use super::format::{counted, short};
 use super::outputs;
 use super::session::{Session, print};
-use exocarp::mesh::shapes::{self, Shape};
-use exocarp::run::Phase;
+use exocarp::Phase;
+use exocarp::shapes::{self, Shape};
 
 pub(super) fn run(arguments: &ModelArguments, session: &Session) -> Result<(), Failure> {
     let (Some(name), Some(output)) = (&arguments.name, &arguments.output) else {

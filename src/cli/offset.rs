@@ -10,13 +10,14 @@ use super::format::{counted, grouped, short};
 use super::outputs;
 use super::session::{Session, Verbosity};
 use super::statistics::{MeshFacts, Phases, RunFile};
-use super::strategy::{Made, check_pieces, execute, identity};
-use exocarp::mesh::{CleanReport, Topology};
-use exocarp::offset::{BandOptions, EngineTimes, OffsetError, OffsetSettings, OffsetStatistics};
-use exocarp::quantity::VoxelSize;
-use exocarp::run::{Bytes, Phase};
-use exocarp::system::peak_memory;
+use super::strategy::{Made, check_pieces, execute};
+use exocarp::internals::mesh::Topology;
+use exocarp::internals::offset::EngineTimes;
+use exocarp::internals::run::Bytes;
+use exocarp::internals::system::peak_memory;
+use exocarp::io::Tile;
 use exocarp::vdb::VdbOptions;
+use exocarp::{BandOptions, CleanReport, OffsetError, OffsetSettings, OffsetStatistics, Phase, VoxelSize};
 use serde::Serialize;
 
 /// The usual resolution: fine enough to see the features, a second or so of work.
@@ -48,7 +49,7 @@ pub(super) fn run(arguments: &OffsetArguments, session: &Session) -> Result<(), 
 
     let (_, write) = session.phase(Phase::Write, || match (&arguments.more.vdb, &result.band) {
         (Some(path), Some(band)) => {
-            let tile = arguments.tile.map(|tile| identity(tile, &loaded.mesh, &settings));
+            let tile = arguments.tile.map(|tile| Tile::new(tile, &loaded.mesh, &settings));
             let options =
                 VdbOptions { distance: Some(result.statistics.distance), ..vdb_options(&arguments.more) };
             save_vdb(band, path, tile, &options, session)

@@ -7,8 +7,8 @@
 //! counts.
 
 use super::exit::{Exit, Failure, of_io};
-use exocarp::io::{directory_of, keep_permissions, resolved};
-use exocarp::run::CancelToken;
+use exocarp::CancelToken;
+use exocarp::internals::io::{directory_of, keep_permissions, resolved};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tempfile::TempDir;

@@ -5,7 +5,7 @@ use super::exit::{Exit, Failure};
 use super::files::save_json;
 use super::outputs;
 use super::session::Session;
-use exocarp::paper::{PaperSettings, Report, Table, measure};
+use exocarp::internals::paper::{PaperSettings, Report, Table, measure};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
 //! The progress bar.
 
-use exocarp::run::{Phase, Progress};
+use exocarp::{Phase, Progress};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::sync::Mutex;
 use std::time::Duration;

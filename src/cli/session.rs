@@ -4,7 +4,7 @@ use super::args::Common;
 use super::exit::{Exit, Failure, of_io, say, say_interrupted};
 use super::outputs::Staging;
 use super::progress::Bar;
-use exocarp::run::{CancelToken, Phase, RunSettings};
+use exocarp::{CancelToken, Phase, RunSettings};
 use std::io::{IsTerminal, Write};
 use std::sync::Arc;
 use std::time::{Duration, Instant};

@@ -3,8 +3,9 @@
 //! Its field names are a contract with those who read it. The engine's parts come as it serialises them.
 
 use super::session::Session;
-use exocarp::mesh::{Topology, TriMesh};
-use exocarp::system::peak_memory;
+use exocarp::TriMesh;
+use exocarp::internals::mesh::Topology;
+use exocarp::internals::system::peak_memory;
 use serde::Serialize;
 
 /// Everything about one run: `S` are its settings, `T` the engine's times.

@@ -4,15 +4,13 @@ use super::args::OffsetArguments;
 use super::exit::Failure;
 use super::files::{format, precision, save_mesh};
 use super::session::Session;
+use exocarp::internals::system::available_memory;
 use exocarp::io::{Format, MeshStream, SaveError, Tile, save_tile};
-use exocarp::mesh::{MeshChunk, TriMesh};
-use exocarp::offset::{
-    BandResult, MeshSink, OffsetError, OffsetResult, OffsetSettings, OffsetStatistics, Partition, SinkError,
-    StreamResult, job, offset, offset_band, offset_streamed,
-};
-use exocarp::quantity::TileIndex;
-use exocarp::system::available_memory;
 use exocarp::vdb::Band;
+use exocarp::{
+    BandResult, MeshChunk, MeshSink, OffsetError, OffsetResult, OffsetSettings, OffsetStatistics, Partition,
+    SinkError, StreamResult, TileIndex, TriMesh, offset, offset_band, offset_streamed,
+};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -66,7 +64,7 @@ pub(super) fn execute(
         Strategy::Slabs(memory) => in_slabs(mesh, arguments, settings, memory, output, session),
         Strategy::Tile(index) => {
             let path = session.staging.stage(output)?;
-            let tile = identity(index, mesh, settings);
+            let tile = Tile::new(index, mesh, settings);
             let mut sink = TileFile { path, tile, f64: arguments.more.f64, seconds: 0.0 };
             let result = offset_streamed(mesh, settings, Partition::Tile(index), &mut sink, run);
             let StreamResult { band, statistics } = result.map_err(|error| of_offset(error, output))?;
@@ -126,12 +124,6 @@ pub(super) fn check_pieces(arguments: &OffsetArguments) -> Result<(), Failure> {
             )))
         }
     }
-}
-
-/// Returns the identity of a tile, which its files carry: its number, and the number that tells
-/// the input and the settings.
-pub(super) fn identity(index: TileIndex, mesh: &TriMesh, settings: &OffsetSettings) -> Tile {
-    Tile { index, job: job(mesh, settings) }
 }
 
 /// Names the output in an error of the file that the mesh goes to.

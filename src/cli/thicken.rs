@@ -11,12 +11,11 @@ use super::outputs;
 use super::session::{Session, Verbosity};
 use super::statistics::{MeshFacts, Phases, RunFile};
 use super::thickness_map;
-use exocarp::mesh::CleanReport;
-use exocarp::offset::{BandOptions, OffsetSettings, offset_band};
-use exocarp::quantity::{Length, VoxelSize};
-use exocarp::run::Phase;
-use exocarp::thicken::{
-    ThickenError, ThickenResult, ThickenSettings, ThickenStatistics, ThickenTimes, thicken,
+use exocarp::internals::thicken::ThickenStatistics;
+use exocarp::internals::thicken::ThickenTimes;
+use exocarp::{
+    BandOptions, CleanReport, Length, OffsetSettings, Phase, ThickenError, ThickenResult, ThickenSettings,
+    VoxelSize, offset_band, thicken,
 };
 use serde::Serialize;
 use std::path::Path;

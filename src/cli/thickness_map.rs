@@ -2,8 +2,8 @@
 
 use super::exit::{Exit, Failure};
 use super::files::check_input;
-use exocarp::io;
-use exocarp::mesh::TriMesh;
+use exocarp::internals::io::vertex_property;
+use exocarp::{TriMesh, io};
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -45,7 +45,7 @@ fn key(v: &[f64; 3]) -> [u64; 3] {
 
 fn property(path: &Path) -> Result<Vec<f64>, Failure> {
     let bad = |reason: String| Failure::new(Exit::Input, format!("{}: {reason}", path.display()));
-    let values = io::vertex_property(path, PROPERTY)?
+    let values = vertex_property(path, PROPERTY)?
         .ok_or_else(|| bad(format!("the vertices have no property {PROPERTY}; name it so, or give text")))?;
     match values.iter().position(|value| !is_thickness(*value)) {
         Some(n) => {

@@ -6,12 +6,12 @@ use super::files::{load_as_it_stands, load_mesh, save_json};
 use super::format::{grouped, short};
 use super::outputs;
 use super::session::Session;
-use exocarp::mesh::{Topology, TriMesh};
-use exocarp::quantity::Length;
+use exocarp::internals::mesh::Topology;
+use exocarp::internals::verify::{ReportedLength, Statistics};
 use exocarp::verify::{
-    IntersectionReport, ReportedLength, ShellReport, Statistics, Subject, TopologyReport, VerifyReport,
-    VerifySettings, verify,
+    IntersectionReport, ShellReport, Subject, TopologyReport, VerifyReport, VerifySettings, verify,
 };
+use exocarp::{Length, TriMesh};
 use serde::Serialize;
 
 pub(super) fn run(arguments: &VerifyArguments, session: &Session) -> Result<(), Failure> {

@@ -185,7 +185,7 @@ pub fn compare(
             continue;
         }
         watch(Event::Judging(result.method));
-        match io::load(&output(result.method)) {
+        match io::load::load(&output(result.method)) {
             Ok(mesh) => result.mesh = Some(mesh),
             Err(error) => result.lost = Some(Lost::Failed(error.kind.to_string())),
         }

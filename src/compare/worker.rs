@@ -8,7 +8,7 @@ use crate::offset::{OffsetSettings, offset};
 use crate::quantity::{Length, VoxelSize};
 use crate::run::RunSettings;
 use crate::system::peak_memory;
-use crate::vdb::{BandWidths, Scheme, VdbLevelSet};
+use crate::vdb::openvdb_tools::{BandWidths, Scheme, VdbLevelSet};
 use std::path::PathBuf;
 use std::time::Instant;
 

@@ -98,7 +98,7 @@ impl TileFile {
     fn open(path: &Path) -> Result<TileFile, MergeError> {
         let at = |kind| MergeError { path: path.to_path_buf(), kind };
         let format = Format::of(path).map_err(|_| at(MergeErrorKind::NotATile))?;
-        let file = super::open(path).map_err(|kind| match kind {
+        let file = super::load::open(path).map_err(|kind| match kind {
             LoadErrorKind::Open(e) => at(MergeErrorKind::Read(e)),
             _ => at(MergeErrorKind::NotATile),
         })?;

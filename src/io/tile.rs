@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 pub struct Tile {
     /// The number of the tile, and that of all tiles.
     pub index: TileIndex,
-    /// A number made of the input and the settings ([`job`](crate::job)): tiles with different ones
-    /// do not belong together.
+    /// A number made of the input and the settings: tiles with different ones do not belong
+    /// together.
     pub job: u64,
 }
 

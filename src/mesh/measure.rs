@@ -3,6 +3,28 @@
 use super::TriMesh;
 use glam::DVec3;
 
+impl TriMesh {
+    /// Returns the surface area, in square model units.
+    ///
+    /// # Panics
+    /// When a vertex number is out of range.
+    pub fn area(&self) -> f64 {
+        area(self)
+    }
+
+    /// Returns the signed volume that the mesh encloses, in cubic model units: positive when the
+    /// triangles are counter-clockwise seen from outside, negative when the mesh is inside out.
+    ///
+    /// It means something for a closed and consistently oriented mesh only. Parts inside one
+    /// another add up with their signs, so a solid with a cavity has the volume of its material.
+    ///
+    /// # Panics
+    /// When a vertex number is out of range.
+    pub fn signed_volume(&self) -> f64 {
+        signed_volume(self)
+    }
+}
+
 /// Returns the surface area, in square model units.
 ///
 /// # Panics

@@ -5,15 +5,23 @@
 //! that are written down here.
 
 use super::{OffsetSettings, OpenInput};
+use crate::io::Tile;
 use crate::mesh::TriMesh;
-use crate::quantity::{Length, Precision, Tolerance, VoxelSize};
+use crate::quantity::{Length, Precision, TileIndex, Tolerance, VoxelSize};
 
-/// Identifies the offset of `mesh` with these settings, as this version of exocarp makes it: two offsets with
+/// Returns the number of the offset of `mesh` with these settings, as this version of exocarp makes it: two offsets with
 /// the same number are the same to the last bit.
 ///
 /// Memory is left out, because it changes nothing of the result, and so is which grids are kept of the band.
 pub fn job(mesh: &TriMesh, settings: &OffsetSettings) -> u64 {
     of_version(env!("CARGO_PKG_VERSION"), mesh, settings)
+}
+
+impl Tile {
+    /// Returns the identity of one tile of the offset of `mesh` with these settings.
+    pub fn new(index: TileIndex, mesh: &TriMesh, settings: &OffsetSettings) -> Tile {
+        Tile { index, job: job(mesh, settings) }
+    }
 }
 
 fn of_version(version: &str, mesh: &TriMesh, settings: &OffsetSettings) -> u64 {

@@ -71,7 +71,7 @@ pub struct OffsetSettings {
     pub precision: Precision,
     /// The distance from the true offset surface to which the result is refined; `None` leaves it
     /// as the lattice gives it. What could not be reached is counted in
-    /// [`ContourStatistics::beyond_tolerance`](crate::ContourStatistics).
+    /// `beyond_tolerance` of the contour's statistics.
     pub tolerance: Option<Tolerance>,
     /// The number of times that the voxel size may be halved where the lattice does not see all of
     /// the surface ([`MissedFeatures`](crate::MissedFeatures)); 0 leaves it as it is. The whole lattice is refined.

@@ -110,7 +110,7 @@ impl Model {
         let (mesh, mut name) = match file {
             Some(file) => {
                 let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-                (run.install(|| io::load(file))?, stem)
+                (run.install(|| io::load::load(file))?, stem)
             }
             None => {
                 let (name, detail) = stand_in.shape;

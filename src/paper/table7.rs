@@ -9,7 +9,8 @@ use super::models::{Model, PaperModel};
 use super::report::{Cell, Report};
 use crate::offset::OffsetResult;
 use crate::quantity::Length;
-use crate::verify::{DistanceReport, VerifySettings, distance_error};
+use crate::verify::judge::distance_error;
+use crate::verify::{DistanceReport, VerifySettings};
 
 /// A published row: offset, average and maximum error, both relative to the offset.
 type Row = (f64, f64, f64);

@@ -88,7 +88,11 @@ fn errors_leave_out_no_vertex_and_no_edge() {
     let result = lab.offset(&model, 0.1, lab.fitted_grid()).unwrap().unwrap();
     let found = table7::errors(&lab, &model, &result).unwrap();
     let mesh = &result.mesh;
-    assert!(3 * mesh.triangles.len() / 2 > 4 * crate::verify::DEFAULT_SAMPLES, "{}", mesh.triangles.len());
+    assert!(
+        3 * mesh.triangles.len() / 2 > 4 * crate::verify::settings::DEFAULT_SAMPLES,
+        "{}",
+        mesh.triangles.len()
+    );
     assert_eq!(found.surface.samples, mesh.triangles.len());
     assert_eq!(found.vertices.samples, mesh.vertices.len());
     assert_eq!(found.edge_midpoints.samples, 3 * mesh.triangles.len() / 2);

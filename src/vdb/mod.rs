@@ -20,23 +20,21 @@
 //! identifier is a hash of the content. Not promised is what happens with another program's damaged file:
 //! the format has no check sums, and OpenVDB trusts what it reads.
 
+mod band_file;
 mod bridge;
 mod error;
-mod file;
+pub(crate) mod file;
 mod grid;
-mod info;
+pub(crate) mod info;
 mod leaves;
 #[cfg(feature = "cli")]
-mod openvdb_tools;
+pub(crate) mod openvdb_tools;
 mod content_id;
-mod tiles;
+pub(crate) mod tiles;
 
+pub use crate::lattice::{Ijk, Lattice, LeafMask};
 pub use error::VdbError;
-pub use file::{
-    Compression, MetaValue, VdbOptions, VdbPrecision, open_band, open_closest, open_surface, write,
-};
+pub use file::{Compression, MetaValue, VdbOptions, VdbPrecision};
 pub use grid::{Band, ClosestGrid, SurfaceGrid};
-pub use info::{FileInfo, GridInfo, info};
-#[cfg(feature = "cli")]
-pub use openvdb_tools::{BandWidths, Polygons, Scheme, VdbLevelSet};
-pub use tiles::{merge_bands, write_tile};
+pub use info::FileInfo;
+pub use tiles::merge_bands;

@@ -20,12 +20,12 @@ mod distance_error;
 mod error;
 mod input_edges;
 mod intersections;
-mod judge;
+pub(crate) mod judge;
 mod missing;
 mod promises;
-mod report;
+pub(crate) mod report;
 mod sampling;
-mod settings;
+pub(crate) mod settings;
 mod shell;
 #[cfg(test)]
 pub(crate) mod tests;
@@ -33,10 +33,9 @@ mod topology;
 mod welded;
 
 pub use error::{MeshRole, VerifyError};
-pub use judge::{creases, distance_error, intersections, missing, soundness, topology, verify};
+pub use judge::{soundness, verify};
 pub use report::{
-    BrokenPromise, CreaseReport, DistanceReport, Histogram, IntersectingPair, IntersectionReport, Judged,
-    MissingReport, Promise, ReportedLength, ShellReport, Soundness, Statistics, Thickness, TopologyReport,
-    VerifyReport,
+    BrokenPromise, CreaseReport, DistanceReport, IntersectionReport, MissingReport, Promise, ShellReport,
+    Soundness, TopologyReport, VerifyReport,
 };
-pub use settings::{DEFAULT_SAMPLES, DEFAULT_SEED, MAX_SAMPLES, Subject, VerifySettings};
+pub use settings::{Subject, VerifySettings};

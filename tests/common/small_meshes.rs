@@ -2,7 +2,7 @@
 //! away.
 
 use super::random::Random;
-use exocarp::mesh::{TriMesh, shapes};
+use exocarp::{TriMesh, shapes};
 use glam::{DQuat, DVec3};
 
 /// A point in the cube of half-side 1.
@@ -157,7 +157,7 @@ pub fn small_mesh(kind: usize, random: &mut Random) -> TriMesh {
             let mut mesh = sphere(4 + r.below(8) as u32);
             let other_side = inside_out(mesh.clone());
             add(&mut mesh, other_side);
-            if r.one_in(2) { exocarp::mesh::weld(mesh).0 } else { mesh }
+            if r.one_in(2) { exocarp::internals::mesh::weld(mesh).0 } else { mesh }
         }
         "crossing" => {
             let mut mesh = cuboid(r, DVec3::ONE, DVec3::ZERO);

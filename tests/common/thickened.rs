@@ -1,10 +1,8 @@
 //! The judge of thickened patches.
 
-use exocarp::mesh::TriMesh;
-use exocarp::mesh::measure::signed_volume;
-use exocarp::run::RunSettings;
-use exocarp::thicken::{Side, ThickenResult, ThickenSettings, thicken};
+use exocarp::internals::mesh::measure::signed_volume;
 use exocarp::verify::soundness;
+use exocarp::{RunSettings, Side, ThickenResult, ThickenSettings, TriMesh, thicken};
 use std::collections::BTreeSet;
 
 /// Thickens, and checks everything that is promised.

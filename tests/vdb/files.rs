@@ -1,11 +1,9 @@
 //! `.vdb` files written, read again, and damaged.
 
 use crate::sphere::{Sphere, read_out};
-use exocarp::run::RunSettings;
-use exocarp::vdb::{
-    Compression, MetaValue, VdbError, VdbOptions, VdbPrecision, info, open_band, open_closest, open_surface,
-    write,
-};
+use exocarp::RunSettings;
+use exocarp::internals::vdb::{info, open_band, open_closest, open_surface, write};
+use exocarp::vdb::{Compression, MetaValue, VdbError, VdbOptions, VdbPrecision};
 use std::path::Path;
 
 const SPHERE: Sphere = Sphere { radius: 2.0, voxel: 0.1, half_width: 3.0 };

@@ -1,9 +1,10 @@
 //! Grids in memory.
 
 use crate::sphere::{Sphere, read_out};
-use exocarp::lattice::{Ijk, Lattice};
-use exocarp::run::{CancelToken, RunSettings};
-use exocarp::vdb::{SurfaceGrid, VdbError, VdbOptions, write};
+use exocarp::internals::lattice::{Ijk, Lattice};
+use exocarp::internals::vdb::write;
+use exocarp::vdb::{SurfaceGrid, VdbError, VdbOptions};
+use exocarp::{CancelToken, RunSettings};
 
 const SPHERE: Sphere = Sphere { radius: 1.0, voxel: 1.0 / 30.0, half_width: 3.0 };
 

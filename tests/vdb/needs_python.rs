@@ -1,7 +1,9 @@
 //! The files as Python's OpenVDB sees them.
 
 use crate::sphere::{Sphere, read_out};
-use exocarp::vdb::{Band, ClosestGrid, Compression, VdbError, VdbOptions, info, open_surface, write};
+use exocarp::internals::vdb::{info, open_surface, write};
+use exocarp::vdb::Band;
+use exocarp::vdb::{ClosestGrid, Compression, VdbError, VdbOptions};
 use std::path::Path;
 use std::process::Command;
 

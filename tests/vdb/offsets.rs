@@ -1,12 +1,12 @@
 //! Bands of real offsets: OpenVDB's own checks, and Python against brute force.
 
-use exocarp::geom::triangle::Triangle;
-use exocarp::lattice::{Ijk, LEAF_SIZE, Lattice};
-use exocarp::mesh::{TriMesh, shapes};
-use exocarp::offset::{BandOptions, OffsetResult, OffsetSettings, offset};
-use exocarp::quantity::{Length, VoxelSize};
-use exocarp::run::RunSettings;
-use exocarp::vdb::{VdbOptions, write};
+use exocarp::internals::geom::triangle::Triangle;
+use exocarp::internals::lattice::{Ijk, LEAF_SIZE, Lattice};
+use exocarp::internals::vdb::write;
+use exocarp::vdb::VdbOptions;
+use exocarp::{
+    BandOptions, Length, OffsetResult, OffsetSettings, RunSettings, TriMesh, VoxelSize, offset, shapes,
+};
 use std::fmt::Write as _;
 
 fn level_set(mesh: &TriMesh, distance: f64, voxel: f64) -> OffsetResult {

@@ -1,7 +1,8 @@
 //! The narrow band of a sphere, built by hand.
 
-use exocarp::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, Lattice, LeafMask};
-use exocarp::vdb::{Band, ClosestGrid, SurfaceGrid};
+use exocarp::internals::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, Lattice, LeafMask};
+use exocarp::vdb::Band;
+use exocarp::vdb::{ClosestGrid, SurfaceGrid};
 
 /// A sphere around the world origin.
 #[derive(Clone, Copy)]

@@ -9,7 +9,12 @@ mod tolerance;
 use std::io::Cursor;
 use std::path::PathBuf;
 
+use super::error::*;
+use super::load::{read, vertex_property};
+use super::loaded::*;
 use super::*;
+use crate::mesh::TriMesh;
+use crate::quantity::Precision;
 
 /// Loads a file with this content; the error as a user sees it, for a file `model.<extension>`.
 fn load_bytes(format: Format, bytes: &[u8]) -> Result<Loaded, String> {

@@ -9,12 +9,12 @@
 //! Creases are exact: the vertices of a crease lie on the curve where the two ideal surfaces meet.
 //!
 //! ```
-//! use exocarp::mesh::{measure, shapes};
+//! use exocarp::shapes;
 //!
 //! let mesh = shapes::carved_cube(shapes::DEFAULT_DETAIL);
 //! let carved = shapes::by_name("carved_cube").unwrap();
 //! let volume = carved.volume.unwrap().value();
-//! assert!((measure::signed_volume(&mesh) - volume).abs() < 0.002 * volume);
+//! assert!((mesh.signed_volume() - volume).abs() < 0.002 * volume);
 //! ```
 
 mod anchor;
@@ -28,18 +28,25 @@ mod spheres;
 #[cfg(test)]
 mod tests;
 
-pub use anchor::anchor;
-pub use blocks::{bracket, cube, fin, hollow_box, needle, wedge};
 pub use carved_cube::carved_cube;
-pub use flower::flower;
 pub use open::wave;
-pub use round::{cylinder, linked_tori, torus};
-pub use spheres::{NEAR_GAP, near_spheres, sphere, touching_spheres};
+pub use spheres::sphere;
+
+// The others are found by their names.
+#[doc(hidden)]
+pub use {
+    anchor::anchor,
+    blocks::{bracket, cube, fin, hollow_box, needle, wedge},
+    flower::flower,
+    round::{cylinder, linked_tori, torus},
+    spheres::{NEAR_GAP, near_spheres, touching_spheres},
+};
 
 use crate::mesh::TriMesh;
 use std::f64::consts::PI;
 
 /// The detail that gives each model some thousand to some ten thousand triangles.
+#[doc(hidden)]
 pub const DEFAULT_DETAIL: u32 = 16;
 
 /// A generated model.
@@ -57,6 +64,7 @@ pub struct Shape {
 }
 
 /// A closed-form volume.
+#[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Volume {
     /// The mesh has this volume, up to rounding: all faces are flat.
