@@ -10,11 +10,11 @@
 mod common;
 
 use common::exocarp;
-use exocarp::io::load;
-use exocarp::mesh::measure::signed_volume;
-use exocarp::mesh::{Topology, TriMesh, clean};
-use exocarp::run::RunSettings;
+use exocarp::internals::io::load;
+use exocarp::internals::mesh::Topology;
+use exocarp::internals::mesh::measure::signed_volume;
 use exocarp::verify::soundness;
+use exocarp::{RunSettings, TriMesh, clean};
 use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::Value;

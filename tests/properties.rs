@@ -10,12 +10,12 @@
 mod common;
 
 use common::random::Random;
-use exocarp::mesh::measure::{area, signed_volume};
-use exocarp::mesh::{Topology, TriMesh, shapes};
-use exocarp::offset::{OffsetSettings, offset};
-use exocarp::quantity::{Length, Precision, Tolerance, VoxelSize};
-use exocarp::run::RunSettings;
+use exocarp::internals::mesh::Topology;
+use exocarp::internals::mesh::measure::{area, signed_volume};
 use exocarp::verify::soundness;
+use exocarp::{
+    Length, OffsetSettings, Precision, RunSettings, Tolerance, TriMesh, VoxelSize, offset, shapes,
+};
 use glam::{DMat3, DQuat, DVec3};
 use std::collections::HashMap;
 

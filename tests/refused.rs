@@ -1,11 +1,10 @@
 //! Meshes that nothing can be made of, given to the library: an error that names the culprit, no
 //! panic.
 
-use exocarp::mesh::{TriMesh, shapes};
-use exocarp::offset::{OffsetError, OffsetSettings, OpenInput, offset, offset_band};
-use exocarp::quantity::{Length, VoxelSize};
-use exocarp::run::RunSettings;
-use exocarp::thicken::{ThickenError, ThickenSettings, thicken};
+use exocarp::{
+    Length, OffsetError, OffsetSettings, OpenInput, RunSettings, ThickenError, ThickenSettings, TriMesh,
+    VoxelSize, offset, offset_band, shapes, thicken,
+};
 
 fn run() -> RunSettings {
     RunSettings::with_threads(1).unwrap()
