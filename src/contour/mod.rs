@@ -1,18 +1,19 @@
 //! Dual contouring without intersections (\[LW11\] section VI, extended).
 //!
-//! The input is a sign for every node, and a crossing for every grid edge with a sign change. Whatever
-//! they are, the output is
+//! The input is a sign for every node, and a crossing for every grid edge with a sign change.
+//! Whatever they are, the output is
 //!
 //! * closed and consistently oriented, counter-clockwise seen from outside,
 //! * 2-manifold: two triangles at every edge, one fan at every vertex,
 //! * free of intersecting, touching and degenerate triangles,
 //!
-//! exactly, for the coordinates as they are returned. A file of the chosen [`Precision`] can hold these
-//! coordinates. The promise is void when the mesh is moved, scaled or rounded further afterwards.
+//! exactly, for the coordinates as they are returned. A file of the chosen [`Precision`] can hold
+//! these coordinates. The promise is void when the mesh is moved, scaled or rounded further
+//! afterwards.
 //!
-//! `tests` prove the promise on random lattices with the exact audit of
-//! [`verify`](crate::verify), thousands of them when `EXOCARP_HEAVY=1` is set. docs/contouring.md has
-//! the argument, and the test that stands for each step.
+//! `tests` prove the promise on random lattices with the exact audit of [`verify`](crate::verify),
+//! thousands of them when `EXOCARP_HEAVY=1` is set. docs/contouring.md has the argument, and the
+//! test that stands for each step.
 //!
 //! With an [`ImplicitSurface`] vertices are placed on creases and corners, also outside of their
 //! cells, and the mesh can be refined to a tolerance. Nothing of the promise depends on the samples

@@ -1,29 +1,27 @@
 //! Axis-parallel boxes.
 
-type Point = [f64; 3];
-
 /// A closed box.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds {
     /// The lowest coordinates.
-    pub lo: Point,
+    pub lo: [f64; 3],
     /// The highest coordinates.
-    pub hi: Point,
+    pub hi: [f64; 3],
 }
 
 impl Bounds {
     /// The box of nothing, which meets no other.
     pub const NOTHING: Bounds = Bounds { lo: [f64::INFINITY; 3], hi: [f64::NEG_INFINITY; 3] };
 
-    /// The box around points; nothing around none.
+    /// Returns the box around points; nothing around none.
     #[inline]
-    pub fn around(points: impl IntoIterator<Item = Point>) -> Bounds {
+    pub fn around(points: impl IntoIterator<Item = [f64; 3]>) -> Bounds {
         points.into_iter().fold(Bounds::NOTHING, |all, p| all.with(&Bounds { lo: p, hi: p }))
     }
 
-    /// The box around a triangle.
+    /// Returns the box around a triangle.
     #[inline(always)]
-    pub fn of_triangle([a, b, c]: [Point; 3]) -> Bounds {
+    pub fn of_triangle([a, b, c]: [[f64; 3]; 3]) -> Bounds {
         // Without regard to what is not a number: comparisons that are faster than those of
         // `f64::min`.
         let least = |x: f64, y: f64| if x < y { x } else { y };
@@ -34,12 +32,12 @@ impl Bounds {
         }
     }
 
-    /// The box with `margin` around it.
+    /// Returns the box with `margin` around it.
     pub fn grown(&self, margin: f64) -> Bounds {
         Bounds { lo: self.lo.map(|x| x - margin), hi: self.hi.map(|x| x + margin) }
     }
 
-    /// What two boxes have in common.
+    /// Returns the intersection of two boxes.
     pub fn within(&self, other: &Bounds) -> Bounds {
         Bounds {
             lo: std::array::from_fn(|a| self.lo[a].max(other.lo[a])),
@@ -60,7 +58,7 @@ impl Bounds {
     }
 
     /// Whether a point lies in this box.
-    pub fn holds(&self, p: Point) -> bool {
+    pub fn holds(&self, p: [f64; 3]) -> bool {
         self.contains(&Bounds { lo: p, hi: p })
     }
 
@@ -69,7 +67,7 @@ impl Bounds {
         (0..3).all(|a| self.lo[a] <= other.lo[a] && other.hi[a] <= self.hi[a])
     }
 
-    /// The box around two boxes.
+    /// Returns the box around two boxes.
     #[inline]
     pub fn with(&self, other: &Bounds) -> Bounds {
         Bounds {

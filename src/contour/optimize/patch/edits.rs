@@ -1,17 +1,15 @@
 //! Moves, splits and flips.
 
-use super::Patch;
+use super::patch_mesh::Patch;
 use super::triangle::{OWN_HOME, PatchEdge, PatchTriangle};
 use crate::contour::mesh::{NEW_TRIANGLE, NEW_VERTEX};
 
-type Point = [f64; 3];
-
 impl Patch {
     /// Moves a vertex to `to`, which must be rounded, if the mesh stays embedded.
-    pub fn try_move(&mut self, vertex: u32, to: Point) -> bool {
+    pub fn try_move(&mut self, vertex: u32, to: [f64; 3]) -> bool {
         let moved = |n: usize| {
             let mut triangle = self.triangles[n];
-            if let Some(k) = triangle.place(vertex) {
+            if let Some(k) = triangle.corner_of(vertex) {
                 triangle.corners[k] = to;
             }
             (n, triangle)
@@ -28,7 +26,7 @@ impl Patch {
 
     /// Puts a new vertex at `at`, which must be rounded, in place of a triangle's interior, if the
     /// mesh stays embedded. Returns its number.
-    pub fn try_split_face(&mut self, n: usize, at: Point) -> Option<u32> {
+    pub fn try_split_face(&mut self, n: usize, at: [f64; 3]) -> Option<u32> {
         let t = self.triangles[n];
         let new = self.new_vertex()?;
         let corner = |k: usize| (t.vertices[k % 3], t.corners[k % 3]);
@@ -44,7 +42,7 @@ impl Patch {
 
     /// Puts a new vertex at `at`, which must be rounded, in place of an edge's interior, if the
     /// mesh stays embedded. Returns its number.
-    pub fn try_split_edge(&mut self, edge: &PatchEdge, at: Point) -> Option<u32> {
+    pub fn try_split_edge(&mut self, edge: &PatchEdge, at: [f64; 3]) -> Option<u32> {
         let PatchEdge { triangles: [first, second], a, b, c, d } = *edge;
         let new = self.new_vertex()?;
         let x = (new, at);
@@ -58,16 +56,18 @@ impl Patch {
         self.insert(&parts, new, at)
     }
 
+    /// Returns the number of the next added vertex.
     fn new_vertex(&self) -> Option<u32> {
         NEW_VERTEX.checked_add(self.changes.new_vertices)
     }
 
+    /// Returns the number of the added triangle `n` from the next one on.
     fn new_triangle(&self, n: usize) -> usize {
         NEW_TRIANGLE + self.changes.new_triangles + n
     }
 
-    /// A triangle of the patch's own leaf.
-    fn triangle(&self, number: usize, corners: [(u32, Point); 3]) -> PatchTriangle {
+    /// Returns a triangle of the patch's own leaf.
+    fn triangle(&self, number: usize, corners: [(u32, [f64; 3]); 3]) -> PatchTriangle {
         PatchTriangle {
             number,
             vertices: corners.map(|c| c.0),
@@ -76,14 +76,14 @@ impl Patch {
         }
     }
 
-    /// Triangle `n` of the patch with other corners.
-    fn reshaped(&self, n: usize, corners: [(u32, Point); 3]) -> PatchTriangle {
+    /// Returns triangle `n` of the patch with other vertices.
+    fn reshaped(&self, n: usize, corners: [(u32, [f64; 3]); 3]) -> PatchTriangle {
         let PatchTriangle { number, home, .. } = self.triangles[n];
         PatchTriangle { home, ..self.triangle(number, corners) }
     }
 
-    /// Accepts a split into `parts`, of which two are new.
-    fn insert(&mut self, parts: &[(usize, PatchTriangle)], vertex: u32, at: Point) -> Option<u32> {
+    /// Replaces triangles by `parts`, of which two are new, if the mesh stays embedded.
+    fn insert(&mut self, parts: &[(usize, PatchTriangle)], vertex: u32, at: [f64; 3]) -> Option<u32> {
         if !self.accepts(parts, &[]) {
             return None;
         }

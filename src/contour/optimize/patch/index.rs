@@ -1,35 +1,34 @@
-//! Which triangles of a patch are at a vertex, and which are near a place, without a look at all of
-//! them.
+//! Indices of a patch's triangles: by vertex, and by position.
 
 use super::Bounds;
 
-/// No vertex, and no corner, has this number.
+/// Stands for no vertex and no halfedge.
 const NONE: u32 = u32::MAX;
 
-/// Slots that most patches have room in: they have some hundred vertices.
-const USUAL: usize = 1024;
+/// The number of slots that most patches have room in: they have some hundred vertices.
+const SLOTS: usize = 1024;
 
-/// Corners of triangles by vertex. A corner's number is three times that of its triangle and its
-/// place there.
+/// The halfedges of triangles by the vertex that they start at. A halfedge's number is three times
+/// that of its triangle, plus its number there.
 ///
-/// Each vertex has a chain of its corners; the chains' beginnings are in a table with open
+/// Each vertex has a chain of its halfedges. The heads of the chains are in a table with open
 /// addressing, since the vertices of a patch are few numbers out of many.
 #[derive(Debug)]
-pub struct Corners {
-    /// A vertex, and the first of its corners; [`NONE`] where the slot is free.
+pub struct HalfedgeIndex {
+    /// A vertex, and the first of its halfedges; [`NONE`] where the slot is free.
     slots: Vec<(u32, u32)>,
     used: usize,
-    /// The next corner of the same vertex, by corner.
+    /// The next halfedge from the same vertex, by halfedge.
     next: Vec<u32>,
 }
 
-impl Corners {
-    /// Of no triangle; there is room for `triangles`.
-    pub fn with_capacity(triangles: usize) -> Corners {
-        Corners { slots: vec![(NONE, NONE); USUAL], used: 0, next: Vec::with_capacity(3 * triangles) }
+impl HalfedgeIndex {
+    /// Makes an empty index with room for `triangles`.
+    pub fn with_capacity(triangles: usize) -> HalfedgeIndex {
+        HalfedgeIndex { slots: vec![(NONE, NONE); SLOTS], used: 0, next: Vec::with_capacity(3 * triangles) }
     }
 
-    /// The slot of a vertex, or the free one where it would be.
+    /// Returns the slot of a vertex, or the free one where it would be.
     #[inline]
     fn slot(&self, vertex: u32) -> usize {
         // Fibonacci hashing: the highest bits of a product with 2^32 over the golden ratio.
@@ -41,16 +40,16 @@ impl Corners {
         slot
     }
 
-    /// The triangles at a vertex and the vertex's places in them, in no order.
+    /// Returns the triangles at a vertex with the vertex's number in each, 0 to 2, in no order.
     #[inline]
     pub fn of(&self, vertex: u32) -> impl Iterator<Item = (usize, usize)> + '_ {
         let first = self.slots[self.slot(vertex)].1;
-        let corners =
+        let halfedges =
             std::iter::successors((first != NONE).then_some(first), |&c| match self.next[c as usize] {
                 NONE => None,
                 next => Some(next),
             });
-        corners.map(|corner| (corner as usize / 3, corner as usize % 3))
+        halfedges.map(|halfedge| (halfedge as usize / 3, halfedge as usize % 3))
     }
 
     /// Adds the next triangle.
@@ -63,16 +62,16 @@ impl Corners {
         }
     }
 
-    /// Gives triangle `n` other vertices.
+    /// Replaces the vertices of triangle `n`.
     pub fn replace(&mut self, n: usize, old: [u32; 3], new: [u32; 3]) {
         for k in (0..3).filter(|&k| old[k] != new[k]) {
-            let corner = (3 * n + k) as u32;
-            self.unlink(corner, old[k]);
-            self.link(corner, new[k]);
+            let halfedge = (3 * n + k) as u32;
+            self.unlink(halfedge, old[k]);
+            self.link(halfedge, new[k]);
         }
     }
 
-    /// Takes triangle `n` out; the numbers of the others stay.
+    /// Removes triangle `n`. The numbers of the others stay.
     pub fn remove(&mut self, n: usize, vertices: [u32; 3]) {
         for (k, vertex) in vertices.into_iter().enumerate() {
             self.unlink((3 * n + k) as u32, vertex);
@@ -80,7 +79,7 @@ impl Corners {
     }
 
     #[inline]
-    fn link(&mut self, corner: u32, vertex: u32) {
+    fn link(&mut self, halfedge: u32, vertex: u32) {
         let mut slot = self.slot(vertex);
         if self.slots[slot].0 == NONE {
             // At most half full, so that free slots are near.
@@ -90,22 +89,22 @@ impl Corners {
             }
             self.used += 1;
         }
-        self.next[corner as usize] = self.slots[slot].1;
-        self.slots[slot] = (vertex, corner);
+        self.next[halfedge as usize] = self.slots[slot].1;
+        self.slots[slot] = (vertex, halfedge);
     }
 
-    fn unlink(&mut self, corner: u32, vertex: u32) {
-        let after = std::mem::replace(&mut self.next[corner as usize], NONE);
+    fn unlink(&mut self, halfedge: u32, vertex: u32) {
+        let after = std::mem::replace(&mut self.next[halfedge as usize], NONE);
         let slot = self.slot(vertex);
         let mut at = self.slots[slot].1;
-        if at == corner {
-            // A vertex without corners keeps its slot: those behind it are found through it.
+        if at == halfedge {
+            // A vertex without halfedges keeps its slot: slots behind it are found through it.
             self.slots[slot].1 = after;
             return;
         }
         while at != NONE {
             let next = self.next[at as usize];
-            if next == corner {
+            if next == halfedge {
                 self.next[at as usize] = after;
                 return;
             }
@@ -125,29 +124,33 @@ impl Corners {
     }
 }
 
-/// Triangles that have a box in common. Those that follow each other are near each other, mostly.
+/// The number of triangles that have a box in common. Consecutive triangles are near each other,
+/// mostly.
 const BLOCK: usize = 32;
 
 /// The boxes of triangles, searched in blocks.
 #[derive(Debug)]
-pub struct Boxes {
+pub struct TriangleBoxes {
     boxes: Vec<Bounds>,
-    /// Around the boxes of each block, and those that were there before.
+    /// The box around the boxes of each block, past ones included.
     blocks: Vec<Bounds>,
 }
 
-impl Boxes {
-    /// Of no triangle; there is room for `triangles`.
-    pub fn with_capacity(triangles: usize) -> Boxes {
-        Boxes { boxes: Vec::with_capacity(triangles), blocks: Vec::with_capacity(triangles.div_ceil(BLOCK)) }
+impl TriangleBoxes {
+    /// Makes an empty set of boxes with room for `triangles`.
+    pub fn with_capacity(triangles: usize) -> TriangleBoxes {
+        TriangleBoxes {
+            boxes: Vec::with_capacity(triangles),
+            blocks: Vec::with_capacity(triangles.div_ceil(BLOCK)),
+        }
     }
 
-    /// The box of triangle `n`.
+    /// Returns the box of triangle `n`.
     pub fn of(&self, n: usize) -> &Bounds {
         &self.boxes[n]
     }
 
-    /// Adds the next triangle's.
+    /// Adds the box of the next triangle.
     #[inline]
     pub fn push(&mut self, bounds: Bounds) {
         match self.blocks.last_mut() {
@@ -157,14 +160,14 @@ impl Boxes {
         self.boxes.push(bounds);
     }
 
-    /// Gives triangle `n` another box.
+    /// Replaces the box of triangle `n`.
     pub fn replace(&mut self, n: usize, bounds: Bounds) {
         self.boxes[n] = bounds;
         let block = &mut self.blocks[n / BLOCK];
         *block = block.with(&bounds);
     }
 
-    /// The triangles whose boxes meet `bounds`, ascending.
+    /// Returns the triangles whose boxes meet `bounds`, ascending.
     #[inline]
     pub fn near<'a>(&'a self, bounds: &'a Bounds) -> impl Iterator<Item = usize> + 'a {
         let blocks = self.blocks.iter().enumerate().filter(|(_, block)| block.meets(bounds));
@@ -181,8 +184,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn corners_are_found_after_any_changes() {
-        let mut corners = Corners::with_capacity(4);
+    fn halfedges_are_found_after_any_changes() {
+        let mut halfedges = HalfedgeIndex::with_capacity(4);
         let mut triangles: Vec<Option<[u32; 3]>> = Vec::new();
         let mut state = 1u32;
         let mut random = |below: u32| {
@@ -199,7 +202,7 @@ mod tests {
                 0 if !triangles.is_empty() => {
                     let n = random(triangles.len() as u32) as usize;
                     if let Some(old) = triangles[n].replace(vertices) {
-                        corners.replace(n, old, vertices);
+                        halfedges.replace(n, old, vertices);
                     } else {
                         triangles[n] = None;
                     }
@@ -207,17 +210,17 @@ mod tests {
                 1 if !triangles.is_empty() => {
                     let n = random(triangles.len() as u32) as usize;
                     if let Some(old) = triangles[n].take() {
-                        corners.remove(n, old);
+                        halfedges.remove(n, old);
                     }
                 }
                 _ => {
-                    corners.push(vertices);
+                    halfedges.push(vertices);
                     triangles.push(Some(vertices));
                 }
             }
         }
         for v in (0..1_520).map(vertex) {
-            let mut found: Vec<_> = corners.of(v).collect();
+            let mut found: Vec<_> = halfedges.of(v).collect();
             found.sort_unstable();
             let there = triangles.iter().enumerate().filter_map(|(n, t)| Some((n, (*t)?)));
             let expected: Vec<_> =
@@ -229,7 +232,7 @@ mod tests {
     #[test]
     fn boxes_are_found_in_their_order() {
         let unit = |x: f64| Bounds { lo: [x, 0.0, 0.0], hi: [x + 1.0, 1.0, 1.0] };
-        let mut boxes = Boxes::with_capacity(1);
+        let mut boxes = TriangleBoxes::with_capacity(1);
         for n in 0..100 {
             boxes.push(unit(f64::from(n)));
         }

@@ -1,7 +1,6 @@
 use super::*;
 use crate::band::LeafId;
 use crate::contour::mesh::{CHANGED, LeafMesh, VertexRun};
-
 use crate::mesh::{Topology, TriMesh, shapes};
 use crate::verify::tests::audit::audit;
 
@@ -39,7 +38,7 @@ fn changed(mesh: &TriMesh, patch: Patch) -> TriMesh {
     changed.into_ordered().mesh
 }
 
-fn octahedron(centre: Point) -> TriMesh {
+fn octahedron(centre: [f64; 3]) -> TriMesh {
     let vertex = |n: usize| {
         let mut p = centre;
         p[n / 2] += if n.is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -161,7 +160,7 @@ fn any_sequence_of_changes_leaves_a_sound_mesh() {
                 continue;
             }
             let t = *patch.triangle_at(n);
-            let mut near = |p: Point| p.map(|x| x + 0.3 * (random() - 0.5));
+            let mut near = |p: [f64; 3]| p.map(|x| x + 0.3 * (random() - 0.5));
             let centre = std::array::from_fn(|i| t.corners.iter().map(|c| c[i]).sum::<f64>() / 3.0);
             let (at, centre) = (near(t.corners[0]), near(centre));
             let kind = (random() * 5.0) as usize;
