@@ -91,8 +91,9 @@ impl CancelToken {
     }
 }
 
-/// Leaves, or things like vertices, that a thread takes on at a time at most. Left alone, rayon cuts a loop into a few parts for each thread, and all
-/// wait for the last part: with two threads for up to a tenth of the loop.
+/// Leaves, or things like vertices, that a thread takes on at a time at most. Left alone, rayon
+/// cuts a loop into a few parts for each thread, and all wait for the last part: with two threads
+/// for up to a tenth of the loop.
 pub const SHARE: usize = 64;
 
 /// Thread pool, cancel token and progress receiver of a run.
@@ -169,7 +170,8 @@ impl RunSettings {
         self.cancel.check()
     }
 
-    /// Runs `f` inside the thread pool, so that rayon's parallel iterators in it use this run's threads.
+    /// Runs `f` inside the thread pool, so that rayon's parallel iterators in it use this run's
+    /// threads.
     pub fn install<R: Send>(&self, f: impl FnOnce() -> R + Send) -> R {
         match &self.pool {
             Some(pool) => pool.install(f),
@@ -205,8 +207,8 @@ pub struct PhaseGuard<'a> {
 }
 
 impl PhaseGuard<'_> {
-    /// `steps` more steps are finished. Returns `Err(Cancelled)` when the run shall stop, so that every
-    /// report of progress is also a point of cancellation.
+    /// `steps` more steps are finished. Returns `Err(Cancelled)` when the run shall stop, so that
+    /// every report of progress is also a point of cancellation.
     pub fn advance(&self, steps: u64) -> Result<(), Cancelled> {
         let done = self.done.fetch_add(steps, Ordering::Relaxed) + steps;
         if let Some(progress) = &self.run.progress {

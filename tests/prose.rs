@@ -1,4 +1,5 @@
-//! The prose of the repository: how wide it is, how doc comments begin, and that what it names exists.
+//! The prose of the repository: how wide it is, how doc comments begin, and that what it names
+//! exists.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,10 +8,10 @@ use std::path::{Path, PathBuf};
 const COLUMNS: usize = 100;
 
 /// Comment lines wider than that, which may not grow in number: pictures that are wrapped by hand.
-const WIDE_COMMENTS: usize = 1100;
+const WIDE_COMMENTS: usize = 230;
 
 /// Doc comments that begin with a pronoun, which may not grow in number.
-const PRONOUNS: usize = 60;
+const PRONOUNS: usize = 0;
 
 /// First words that refer to another item, which a tooltip does not show.
 const ANAPHORS: [&str; 13] = [

@@ -32,7 +32,8 @@ fn public_names_are_few() {
 #[test]
 fn names_are_recognised() {
     let text = "pub use a::{B, c};\npub use d::{\n    E, F,\n    g,\n};\n#[doc(hidden)]\npub use h::I;\n\
-                /// Text.\npub fn j<T>() {}\npub(crate) fn k() {}\n#[derive(Debug)]\npub enum L {\n    M,\n}\n\
+                /// Text.\npub fn j<T>() {}\npub(crate) fn k() {}\n#[derive(Debug)]\npub enum L {\n
+                /// M,\n}\n\
                 impl L {\n    pub fn n() {}\n}\n#[cfg(x)]\npub use o::P as Q;\npub static R: u8 = 0;\n";
     assert_eq!(public_names(text), ["B", "c", "E", "F", "g", "j", "L", "Q", "R"]);
 }

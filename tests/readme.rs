@@ -8,7 +8,8 @@ use std::process::{Command, Stdio};
 /// Stands before a block that is not run, with the reason.
 const NOT_RUN: &str = "<!-- not run: ";
 
-/// Resolution at most: each command runs as it stands but for this, so that a debug build does them all.
+/// Resolution at most: each command runs as it stands but for this, so that a debug build does them
+/// all.
 const RESOLUTION: u32 = 64;
 
 #[test]

@@ -1,4 +1,4 @@
-//! The same bytes of every output for every number of threads, over the settings of the program.
+//! Equal bytes of every output for every number of threads, over the settings of the program.
 
 mod common;
 

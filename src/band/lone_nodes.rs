@@ -12,8 +12,8 @@
 //! ```
 //!
 //! The tip's node touches the others across the diagonal of a cell only. It changes sides, and the
-//! contour finds the corner from the cells beside it, like all corners that lie outside of the cells
-//! that see them.
+//! contour finds the corner from the cells beside it, like all corners that lie outside of the
+//! cells that see them.
 //!
 //! A node that is all that there is of a small part stays: no other node of its side can be reached
 //! from it.

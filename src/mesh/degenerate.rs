@@ -8,8 +8,9 @@
 //!     `--m--'
 //! ```
 //!
-//! The corners of the triangle p m q lie on a line. Dropped alone, it would leave p m and m q without
-//! the long side p q of its neighbour p q r. Below p m and m q are their neighbours, before and after.
+//! The corners of the triangle p m q lie on a line. Dropped alone, it would leave p m and m q
+//! without the long side p q of its neighbour p q r. Below p m and m q are their neighbours, before
+//! and after.
 //!
 //! The triangle across its longest edge gets the middle corner instead: p q r becomes p m r and m q
 //! r. Their sum has exactly the edges of the two triangles before, so what was closed stays closed,

@@ -2,12 +2,13 @@
 
 use std::fmt;
 
-/// An amount of memory in bytes. Shown with powers of 1024, in the unit that it was given in where that can
-/// be told: `1G` is `1 GB`, `1500M` is `1500 MB`.
+/// An amount of memory in bytes. Shown with powers of 1024, in the unit that it was given in where
+/// that can be told: `1G` is `1 GB`, `1500M` is `1500 MB`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Bytes(pub u64);
 
-/// Numbers above this are shown in the next larger unit, rounded: more digits than that are hard to read.
+/// Numbers above this are shown in the next larger unit, rounded: more digits than that are hard to
+/// read.
 const MOST: u64 = 10_000;
 
 /// The units with their sizes in bytes, the largest first.

@@ -1,7 +1,8 @@
 //! Thickening: the solid on one side of an open surface patch (\[WC13\], Wang and Chen 2013).
 //!
 //! ```text
-//!  patch -> hierarchy -> nodes -> crossings -> contour without its inset -> strips to the patch -> exact tests -> mesh
+//!  patch -> hierarchy -> nodes -> crossings -> contour without its inset
+//!        -> strips to the patch -> shape processing, exact tests -> mesh
 //! ```
 //!
 //! | files | step |

@@ -253,7 +253,8 @@ fn a_failed_write_leaves_the_old_file_and_nothing_else() {
     let path = dir.path().join("sphere.vdb");
     write_sphere(&path, &options());
     let old = std::fs::read(&path).unwrap();
-    // Files of at most 8 KiB, or 16 where the shell counts in KiB; the signal would end the process.
+    // Files of at most 8 KiB, or 16 where the shell counts in KiB; the signal would end the
+    // process.
     let limited = "trap '' XFSZ; ulimit -f 16; exec \"$0\" \"$@\"";
     let test = "files::a_failed_write_leaves_the_old_file_and_nothing_else";
     let run = std::process::Command::new("sh")

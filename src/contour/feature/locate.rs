@@ -7,9 +7,11 @@
 //! case that another triangle of it is nearer.
 //!
 //! ```text
-//!   planes at the crossings -> where they meet -> planes of the triangles there -> where these meet ... -> is it on the
-//!        A \   / B                 \ /                    \ /                      surface? then that is the feature;
-//!           \ /                     x                      x                       else follow the nearer triangle
+//!   planes at the crossings -> where they meet -> planes of the triangles there -> where these meet
+//!        A \   / B                 \ /                    \ /                         x  ...
+//!           \ /                     x                      x
+//!
+//!   on the surface? then that is the feature; else follow the nearer triangle
 //! ```
 
 use super::probe::SurfaceProbe;

@@ -6,11 +6,16 @@
 //! that of d:
 //!
 //! ```text
-//!      a ----- d         On the side of b it stays in the envelope when it crosses the triangle (b, v+, v-),
-//!      | \ e   |         the wall between the tetrahedra (a, b, v+, v-) and (b, c, v+, v-). The triangle abc is
-//!      |  \    |         then in these two. The triangle acd is in the envelope when e crosses it: it falls
-//!      b ----- c         apart into pieces in the four tetrahedra.
+//!      a ----- d
+//!      | \ e   |
+//!      |  \    |
+//!      b ----- c
 //! ```
+//!
+//! On the side of b it stays in the envelope when it crosses the triangle (b, v+, v-), the wall
+//! between the tetrahedra (a, b, v+, v-) and (b, c, v+, v-). The triangle abc is then in these two.
+//! The triangle acd is in the envelope when e crosses it: it falls apart into pieces in the four
+//! tetrahedra.
 //!
 //! Both tests are strict. A diagonal that meets the grid edge itself crosses neither wall and is
 //! given up for a vertex on the edge, which is what \[LW11\] says of such cases.

@@ -94,7 +94,8 @@ pub struct Fit<'a> {
     /// The difference in distance from the crease planes below which two diagonals count as equally
     /// good, in model units.
     pub crease_tolerance: f64,
-    /// The same difference for the tangent plane, in model units.
+    /// Difference of distances from the tangent plane, in model units, up to which two diagonals
+    /// are equal.
     pub plane_tolerance: f64,
 }
 

@@ -3,8 +3,9 @@
 //! ```text
 //!        S  ________________________
 //!  inset    ........................  |     inset: at depth d below S
-//!           |        inside       |   |     section: where the closest point leaves the boundary of S
-//!  shell    |_____________________|   |     shell: at depth r
+//!           |        inside       |   |     section: where the closest point
+//!  shell    |_____________________|   |              leaves the boundary of S
+//!                                           shell: at depth r
 //! ```
 //!
 //! The contour is that of \[WC13\] Definition 2 without the layer between S and the inset, so that
