@@ -7,7 +7,7 @@
 //! case that another triangle of it is nearer.
 //!
 //! ```text
-//!   planes at the crossings -> where they meet -> planes of the triangles there -> where these meet
+//!   planes at crossings -> where they meet -> planes of the triangles there -> where these meet
 //!        A \   / B                 \ /                    \ /                         x  ...
 //!           \ /                     x                      x
 //!
