@@ -7,6 +7,13 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+/// Crates that only the program needs.
+const OF_THE_PROGRAM: [&str; 4] = ["clap", "clap_complete", "ctrlc", "indicatif"];
+
+/// Files `mod.rs` that hold code, which may not grow in number: the others are faces, of
+/// documentation, modules and what is exported.
+const NOT_FACES: usize = 10;
+
 #[test]
 fn no_arrow_runs_back() {
     let order = modules();
@@ -61,6 +68,59 @@ fn sentences_of_the_library_name_no_option() {
             assert!(!is_option(code), "{}:{}: {room} names an option", path.display(), number + 1);
         }
     }
+}
+
+#[test]
+fn the_library_needs_no_crate_of_the_program() {
+    let (mut program, mut wrong) = (0, Vec::new());
+    for path in sources(Path::new("src")) {
+        let is_program = path.starts_with("src/cli") || path == Path::new("src/main.rs");
+        let text = fs::read_to_string(&path).unwrap();
+        let code = text.lines().map(|line| line.split("//").next().unwrap_or_default());
+        let named = code.flat_map(|line| line.split(|c: char| !c.is_alphanumeric() && c != '_'));
+        let used = named.filter(|word| OF_THE_PROGRAM.contains(word)).count();
+        if is_program {
+            program += used;
+        } else if used > 0 {
+            wrong.push(path.display().to_string());
+        }
+    }
+    assert!(program > 5, "only {program} uses were found in the program");
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+#[test]
+fn files_named_mod_are_faces() {
+    let holds_code = |path: &PathBuf| defines_something(&fs::read_to_string(path).unwrap());
+    let all = sources(Path::new("src")).into_iter().filter(|path| path.ends_with("mod.rs"));
+    let (with_code, faces): (Vec<PathBuf>, Vec<PathBuf>) = all.partition(holds_code);
+    assert!(faces.len() > 10, "only {} faces were found", faces.len());
+    assert!(with_code.len() <= NOT_FACES, "{with_code:?}");
+}
+
+/// Whether a file defines a function, a type or a value.
+fn defines_something(text: &str) -> bool {
+    const DEFINITIONS: [&str; 7] = ["fn ", "struct ", "enum ", "trait ", "impl", "const ", "static "];
+    text.lines().any(|line| {
+        let line = line.strip_prefix("pub").unwrap_or(line);
+        let line = line.strip_prefix("(crate)").or(line.strip_prefix("(super)")).unwrap_or(line);
+        DEFINITIONS.iter().any(|word| line.trim_start_matches(' ').starts_with(word))
+    })
+}
+
+#[test]
+fn ignored_tests_say_what_they_need() {
+    let mut ignored = 0;
+    for path in sources(Path::new("src")).into_iter().chain(sources(Path::new("tests"))) {
+        for (number, line) in fs::read_to_string(&path).unwrap().lines().enumerate() {
+            let Some(attribute) = line.trim().strip_prefix("#[ignore") else { continue };
+            ignored += 1;
+            let reason = attribute.strip_prefix(" = \"").unwrap_or_default();
+            let says = reason.starts_with("needs ") || reason.starts_with("takes minutes");
+            assert!(says, "{}:{}: {line}", path.display(), number + 1);
+        }
+    }
+    assert!(ignored > 5, "only {ignored} were found");
 }
 
 /// The number of imports in a file of `room`, and those from rooms that come after it.
@@ -144,4 +204,12 @@ fn imports_are_recognised() {
                 #[cfg(test)]\nmod tests;\n#[cfg(test)]\nmod more {\nuse crate::offset::x;\n}";
     let names: Vec<String> = used_modules(text).into_iter().map(|(_, name)| name).collect();
     assert_eq!(names, ["mesh", "band", "run", "io"]);
+}
+
+#[test]
+fn definitions_are_recognised() {
+    assert!(!defines_something("//! Docs of fn.\nmod a;\npub use a::{b, c};\n"));
+    for code in ["pub fn a() {}", "    fn a(&self)", "pub(crate) struct A;", "impl A {", "const A: u8 = 1;"] {
+        assert!(defines_something(code), "{code}");
+    }
 }
