@@ -8,8 +8,8 @@ use exocarp::{Length, OpenInput, SectionNormals, Side, ThickenSettings, TileInde
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-/// Offset surfaces of triangle meshes: closed, free of self-intersections, with sharp features, and their
-/// narrow band as OpenVDB.
+/// Offset surfaces of triangle meshes: closed, free of self-intersections, with sharp features, and
+/// their narrow band as OpenVDB.
 #[derive(Debug, Parser)]
 #[command(name = "exocarp", version, after_help = examples::ALL, arg_required_else_help = true)]
 #[command(disable_help_subcommand = true)]
@@ -56,7 +56,8 @@ pub(super) enum Command {
     Model(ModelArguments),
     /// Print what a mesh or a .vdb file holds
     Info(InfoArguments),
-    /// Judge a mesh as the offset surface of another: topology, intersections, errors, what is missing
+    /// Judge a mesh as the offset surface of another: topology, intersections, errors, what is
+    /// missing
     Verify(VerifyArguments),
     /// Print the tables of the method's paper, measured here, beside the published figures
     Paper(PaperArguments),
@@ -91,22 +92,24 @@ pub(super) struct OffsetArguments {
     /// Where inside and outside come from
     #[arg(long, value_enum, default_value_t = Sign::Closed)]
     pub sign: Sign,
-    /// Refine the mesh until it is this near to the true offset surface: in model units, or in voxels as 0.05h
+    /// Refine the mesh until it is this near to the true offset surface: in model units, or in
+    /// voxels as 0.05h
     #[arg(long, value_name = "E", allow_negative_numbers = true)]
     pub tolerance: Option<Tolerance>,
-    /// Halve the voxel size up to N times while parts, sheets or gaps thinner than a voxel are missing
+    /// Halve the voxel size up to N times while parts, sheets or gaps thinner than a voxel are
+    /// missing
     #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, default_value_t = 0, default_missing_value = "3")]
     #[arg(value_parser = clap::value_parser!(u32).range(0..=10), hide_default_value = true)]
     pub resolve: u32,
-    /// Work slab by slab and write triangles as they come (PLY, STL), within --max-memory [default there: 1G]; on by
-    /// itself when the whole would not fit
+    /// Work slab by slab and write triangles as they come (PLY, STL), within --max-memory [default
+    /// there: 1G]; on by itself when the whole would not fit
     #[arg(long, conflicts_with = "tile")]
     pub stream: bool,
     /// Make tile I of N only, for `exocarp merge` to join: several machines share one offset
     #[arg(long, value_name = "I/N", conflicts_with = "resolve")]
     pub tile: Option<TileIndex>,
-    /// Write the closest triangle of each voxel into the .vdb file, too, as a second grid; many programs
-    /// cannot read that
+    /// Write the closest triangle of each voxel into the .vdb file, too, as a second grid; many
+    /// programs cannot read that
     #[arg(long, requires = "vdb")]
     pub closest: bool,
     #[command(flatten)]
@@ -136,8 +139,8 @@ pub(super) struct ThickenArguments {
     #[arg(long, short, value_name = "T", allow_hyphen_values = true)]
     #[arg(required_unless_present = "thickness_map")]
     pub thickness: Option<Length>,
-    /// The thickness at each vertex of PATCH, in the order of the file, in model units: text, or a PLY file whose
-    /// vertices have the property `thickness`
+    /// The thickness at each vertex of PATCH, in the order of the file, in model units: text, or a
+    /// PLY file whose vertices have the property `thickness`
     #[arg(long, value_name = "FILE", conflicts_with = "thickness")]
     pub thickness_map: Option<PathBuf>,
     /// The side of the patch on which the solid lies: behind it, or where its normals point
@@ -157,11 +160,13 @@ pub(super) struct ThickenArguments {
     #[arg(long, value_name = "N", default_value_t = ThickenSettings::default().max_halvings)]
     #[arg(value_parser = clap::value_parser!(u32).range(0..=10))]
     pub resolve: u32,
-    /// Rounds of shape processing at most: flatter sections with sharper edges, and a shell nearer to its distance
+    /// Rounds of shape processing at most: flatter sections with sharper edges, and a shell nearer
+    /// to its distance
     #[arg(long, value_name = "N", default_value_t = ThickenSettings::default().rounds)]
     #[arg(value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub rounds: u32,
-    /// The normals of the section in these rounds: of the walls on the boundary's edges, or of its faces, smoothed
+    /// The normals of the section in these rounds: of the walls on the boundary's edges, or of its
+    /// faces, smoothed
     #[arg(long, value_enum, default_value_t = Normals::Exact)]
     pub section_normals: Normals,
     #[command(flatten)]
@@ -248,8 +253,8 @@ impl Normals {
 pub(super) struct CompareArguments {
     /// The mesh to offset, closed
     pub input: PathBuf,
-    /// Signed distance in model units, or in percent of the input's diagonal: positive grows, negative
-    /// shrinks
+    /// Signed distance in model units, or in percent of the input's diagonal: positive grows,
+    /// negative shrinks
     #[arg(long, short, value_name = "D", allow_hyphen_values = true)]
     pub distance: Length,
     /// Voxel size in model units
@@ -399,7 +404,8 @@ pub(super) struct VerifyArguments {
     pub input: PathBuf,
     /// The mesh to judge
     pub output: PathBuf,
-    /// Signed distance that OUTPUT is said to be at, in model units, or in percent of INPUT's diagonal
+    /// Signed distance that OUTPUT is said to be at, in model units, or in percent of INPUT's
+    /// diagonal
     #[arg(long, short, value_name = "D", allow_hyphen_values = true)]
     pub distance: Length,
     /// Write everything that was found as JSON
@@ -408,8 +414,8 @@ pub(super) struct VerifyArguments {
     /// Voxel size in model units, to give errors in voxels
     #[arg(long, value_name = "H", value_parser = voxel, allow_negative_numbers = true)]
     pub voxel: Option<f64>,
-    /// The largest error allowed, in model units or in percent of INPUT's diagonal: of OUTPUT from the true
-    /// offset surface, and the other way round
+    /// The largest error allowed, in model units or in percent of INPUT's diagonal: of OUTPUT from
+    /// the true offset surface, and the other way round
     #[arg(long, value_name = "E", allow_negative_numbers = true)]
     pub tolerance: Option<Length>,
     /// Samples, uniform over the area, up to 20 million
@@ -418,12 +424,12 @@ pub(super) struct VerifyArguments {
     /// Seed of the samples
     #[arg(long, value_name = "S", default_value_t = exocarp::internals::verify::DEFAULT_SEED)]
     pub seed: u64,
-    /// OUTPUT is a shell: INPUT's own surface and the offset surface. Measures its wall, which is to be T model
-    /// units thick [default: |D|]
+    /// OUTPUT is a shell: INPUT's own surface and the offset surface. Measures its wall, which is
+    /// to be T model units thick [default: |D|]
     #[arg(long, value_name = "T", num_args = 0..=1, value_parser = voxel)]
     pub shell: Option<Option<f64>>,
-    /// INPUT's inside and outside: whether open input is accepted. Only the count of points on the wrong side
-    /// depends on it, and open input has none
+    /// INPUT's inside and outside: whether open input is accepted. Only the count of points on the
+    /// wrong side depends on it, and open input has none
     #[arg(long, value_enum, default_value_t = Sign::Pseudonormal)]
     pub sign: Sign,
 }

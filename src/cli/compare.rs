@@ -1,4 +1,5 @@
-//! `exocarp compare`: the same offset with other programs; and the hidden command that does one run of it.
+//! `exocarp compare`: the same offset with other programs; and the hidden command that does one run
+//! of it.
 
 use super::args::{CompareArguments, WorkerArguments};
 use super::exit::{Exit, Failure};

@@ -72,7 +72,8 @@ pub(super) fn say(kind: &str, sentence: &str) {
     let _ = writeln!(std::io::stderr(), "exocarp: {kind}: {}", sentence.replace('\n', " "));
 }
 
-/// Says that the run was interrupted, once: the interrupted command and the signal handler may both get here.
+/// Says that the run was interrupted, once: the interrupted command and the signal handler may both
+/// get here.
 pub(super) fn say_interrupted() {
     static SAID: AtomicBool = AtomicBool::new(false);
     if !SAID.swap(true, Ordering::SeqCst) {

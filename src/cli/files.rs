@@ -11,8 +11,8 @@ use exocarp::{CleanReport, Phase, Precision, TriMesh, clean};
 use serde::Serialize;
 use std::path::Path;
 
-/// Half-width in voxels of a band that other programs will read: OpenVDB's own default, and the least that
-/// its level-set checks accept.
+/// Half-width in voxels of a band that other programs will read: OpenVDB's own default, and the
+/// least that its level-set checks accept.
 pub(super) const STORED_HALF_WIDTH: f64 = 3.0;
 
 /// The coordinates that the output will have: the promise of no intersections holds for those.
@@ -67,7 +67,8 @@ pub(super) fn load_as_it_stands(path: &Path, session: &Session) -> Result<(TriMe
     Ok((mesh, seconds))
 }
 
-/// Refuses an input that is no file before it is opened: opening a pipe would wait for who writes to it.
+/// Refuses an input that is no file before it is opened: opening a pipe would wait for who writes
+/// to it.
 pub(super) fn check_input(path: &Path) -> Result<(), Failure> {
     let refuse = |what: &str| {
         Err(Failure::new(Exit::Input, format!("{}: {what}; save it as a file and name that", path.display())))

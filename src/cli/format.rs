@@ -10,8 +10,8 @@ pub(super) fn voxel(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A number of threads. Far more of them than cores are busy with one another: 1024 on two cores take twenty
-/// times as long as two, and 4096 take minutes of nothing else.
+/// A number of threads. Far more of them than cores are busy with one another: 1024 on two cores
+/// take twenty times as long as two, and 4096 take minutes of nothing else.
 pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {
     const MOST: usize = 512;
     let most = std::thread::available_parallelism().map_or(MOST, |cores| cores.get().max(MOST));

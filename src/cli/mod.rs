@@ -1,7 +1,7 @@
 //! The command line: arguments in, files and one line out.
 //!
-//! Every command ends in an [`Exit`]: the table of exit codes is there and nowhere else. Errors are one
-//! sentence on stderr, results one line on stdout.
+//! Every command ends in an [`Exit`]: the table of exit codes is there and nowhere else. Errors are
+//! one sentence on stderr, results one line on stdout.
 
 mod args;
 mod compare;

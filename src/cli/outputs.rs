@@ -1,10 +1,10 @@
 //! Output files that appear together and whole, or not at all.
 //!
-//! While they are written they lie in a hidden directory beside their targets, under their own names; only
-//! when all of them are complete they are renamed into place. So a run that fails or is interrupted leaves
-//! what was there before, and never a mesh without the statistics that belong to it. A file that is replaced
-//! hands on its permissions, also where it may only be read: that a directory may be written to is what
-//! counts.
+//! While they are written they lie in a hidden directory beside their targets, under their own
+//! names; only when all of them are complete they are renamed into place. So a run that fails or is
+//! interrupted leaves what was there before, and never a mesh without the statistics that belong to
+//! it. A file that is replaced hands on its permissions, also where it may only be read: that a
+//! directory may be written to is what counts.
 
 use super::exit::{Exit, Failure, of_io};
 use exocarp::CancelToken;
@@ -79,7 +79,8 @@ impl Staging {
     }
 }
 
-/// Checks, before anything is computed, that all `targets` can be written and differ from one another.
+/// Checks, before anything is computed, that all `targets` can be written and differ from one
+/// another.
 pub(super) fn check<'a>(targets: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
     let mut seen: Vec<PathBuf> = Vec::new();
     for path in targets {

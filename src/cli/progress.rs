@@ -19,8 +19,8 @@ struct Now {
 /// The length of the bar in parts.
 const PARTS: u64 = 1000;
 
-/// The share of a phase in the whole, in parts. Wrong shares make the estimate jump, no more; these are
-/// typical of resolution 256.
+/// The share of a phase in the whole, in parts. Wrong shares make the estimate jump, no more; these
+/// are typical of resolution 256.
 fn share(phase: Phase) -> u64 {
     match phase {
         Phase::Load => 50,

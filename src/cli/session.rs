@@ -101,8 +101,8 @@ impl Drop for Session {
     }
 }
 
-/// Text on stdout, with a line end. A reader that went away (`| head`) is no error, a text that is lost is
-/// one.
+/// Text on stdout, with a line end. A reader that went away (`| head`) is no error, a text that is
+/// lost is one.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout();
     printed(writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush()))
@@ -119,11 +119,11 @@ pub(super) fn printed(result: std::io::Result<()>) -> Result<(), Failure> {
     }
 }
 
-/// On Ctrl-C or the signal to terminate: cancels, gives the command a moment to end by itself, and ends
-/// the program if it does not.
+/// On Ctrl-C or the signal to terminate: cancels, gives the command a moment to end by itself, and
+/// ends the program if it does not.
 fn handle_interrupt(cancel: CancelToken, staging: Staging) {
-    // Reading and writing a file or building a hierarchy cannot be cancelled. The promise is to stop within
-    // 200 ms, and removing a large incomplete file takes some of them.
+    // Reading and writing a file or building a hierarchy cannot be cancelled. The promise is to
+    // stop within 200 ms, and removing a large incomplete file takes some of them.
     const GRACE: Duration = Duration::from_millis(20);
     let handler = move || {
         cancel.cancel();

@@ -1,6 +1,7 @@
 //! The statistics file: one JSON object, lengths in model units, times in seconds.
 //!
-//! Its field names are a contract with those who read it. The engine's parts come as it serialises them.
+//! Its field names are a contract with those who read it. The engine's parts come as it serialises
+//! them.
 
 use super::session::Session;
 use exocarp::TriMesh;

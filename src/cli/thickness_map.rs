@@ -10,10 +10,11 @@ use std::path::Path;
 /// The vertices' property that a map in a PLY file is.
 const PROPERTY: &str = "thickness";
 
-/// The values of the map in `path` for the vertices of `mesh`, which is what cleaning made of `input`.
+/// The values of the map in `path` for the vertices of `mesh`, which is what cleaning made of
+/// `input`.
 ///
-/// The map is the property `thickness` of the vertices of a PLY file, or text: numbers in the order of the file's vertices,
-/// separated by blanks or line ends; `#` begins a comment.
+/// The map is the property `thickness` of the vertices of a PLY file, or text: numbers in the order
+/// of the file's vertices, separated by blanks or line ends; `#` begins a comment.
 pub(super) fn load(path: &Path, input: &Path, mesh: &TriMesh) -> Result<Vec<f64>, Failure> {
     check_input(path)?;
     let shown = path.display();

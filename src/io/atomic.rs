@@ -1,10 +1,10 @@
 //! Output files that appear whole or not at all.
 //!
-//! The content goes to a temporary file beside the target, which is renamed when complete. A failure, a panic
-//! or a cancelled run removes the temporary file and leaves an existing target as it was. The file gets the
-//! permissions of the one that it replaces, or else those of any new file (the umask decides). A symbolic
-//! link keeps pointing to its file, and that file is replaced. Not promised: that the content is on the disk
-//! after a loss of power.
+//! The content goes to a temporary file beside the target, which is renamed when complete. A
+//! failure, a panic or a cancelled run removes the temporary file and leaves an existing target as
+//! it was. The file gets the permissions of the one that it replaces, or else those of any new file
+//! (the umask decides). A symbolic link keeps pointing to its file, and that file is replaced. Not
+//! promised: that the content is on the disk after a loss of power.
 //!
 //! The program replaces several files together, and takes from here what it needs for that.
 
@@ -29,7 +29,8 @@ pub(crate) fn write_atomically(
     replacement.commit().map_err(|e| at(SaveErrorKind::Replace(e)))
 }
 
-/// A temporary file that replaces another one when it is complete, and is removed when dropped before.
+/// A temporary file that replaces another one when it is complete, and is removed when dropped
+/// before.
 pub(crate) struct Replacement {
     target: PathBuf,
     temporary: NamedTempFile,
@@ -39,8 +40,8 @@ impl Replacement {
     /// Creates an empty file beside `path`, with the same extension.
     ///
     /// # Errors
-    /// When no file can be created there, or `path` is something else than a file: a directory, a pipe or a
-    /// device, which a file must not take the place of.
+    /// When no file can be created there, or `path` is something else than a file: a directory, a
+    /// pipe or a device, which a file must not take the place of.
     pub fn create(path: &Path) -> std::io::Result<Self> {
         let target = resolved(path);
         if target.exists() && !target.is_file() {
@@ -67,8 +68,8 @@ impl Replacement {
     }
 }
 
-/// Gives `new` the permissions of `old`, the file that it is to replace, if there is one: who may read and
-/// write it, not as whom it would run.
+/// Gives `new` the permissions of `old`, the file that it is to replace, if there is one: who may
+/// read and write it, not as whom it would run.
 pub fn keep_permissions(new: &Path, old: &Path) -> std::io::Result<()> {
     #[cfg(unix)]
     if let Ok(old) = std::fs::metadata(old) {
@@ -82,7 +83,8 @@ pub fn keep_permissions(new: &Path, old: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Returns the file behind `path` if that is a symbolic link, so that the link stays one, and else `path`.
+/// Returns the file behind `path` if that is a symbolic link, so that the link stays one, and else
+/// `path`.
 pub fn resolved(path: &Path) -> PathBuf {
     match path.is_symlink() {
         true => path.canonicalize().unwrap_or_else(|_| path.to_path_buf()),

@@ -169,7 +169,8 @@ impl LoadErrorKind {
 
 /// A piece of the file, in quotes, printable, and short enough for a sentence.
 pub(super) fn quote(bytes: &[u8]) -> String {
-    /// Longer pieces would bury the sentence; shorter ones would cut ordinary lines of three numbers.
+    /// Longer pieces would bury the sentence; shorter ones would cut ordinary lines of three
+    /// numbers.
     const LONGEST: usize = 60;
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * LONGEST)]);
     let text = text.trim();

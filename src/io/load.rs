@@ -8,13 +8,13 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
-/// Loads the mesh in the file `path`, unchanged but for polygons, which are triangulated, and for vertices
-/// that are not finite, which are left out with the faces that have them. [`load_with_notes`] also says of
-/// what was left out.
+/// Loads the mesh in the file `path`, unchanged but for polygons, which are triangulated, and for
+/// vertices that are not finite, which are left out with the faces that have them.
+/// [`load_with_notes`] also says of what was left out.
 ///
 /// # Errors
-/// When the extension is unknown, or the file is missing, empty, cut off, of another format or broken, has
-/// a vertex number out of range, or no triangles with finite coordinates.
+/// When the extension is unknown, or the file is missing, empty, cut off, of another format or
+/// broken, has a vertex number out of range, or no triangles with finite coordinates.
 pub fn load(path: &Path) -> Result<TriMesh, LoadError> {
     load_with_notes(path).map(|loaded| loaded.mesh)
 }
@@ -38,8 +38,8 @@ pub fn load_with_notes(path: &Path) -> Result<Loaded, LoadError> {
     read(file, format).and_then(|content| content.finish(path)).map_err(|error| at(Some(format), error))
 }
 
-/// The numbers that the vertices of the PLY file `path` have under `name`, in the order of the file; `None` where no
-/// such property is, or it is a list.
+/// The numbers that the vertices of the PLY file `path` have under `name`, in the order of the
+/// file; `None` where no such property is, or it is a list.
 ///
 /// # Errors
 /// As [`load`], and when the file is of another format.

@@ -11,15 +11,15 @@ use crate::mesh::TriMesh;
 pub struct Loaded {
     /// The mesh.
     pub mesh: TriMesh,
-    /// The vertices of the file that are not in the mesh, since a coordinate is not finite: their numbers,
-    /// counted from 0, ascending. The others keep their order.
+    /// The vertices of the file that are not in the mesh, since a coordinate is not finite: their
+    /// numbers, counted from 0, ascending. The others keep their order.
     pub left_out: Vec<u32>,
     /// Notes that a user should read.
     pub notes: Vec<Note>,
 }
 
-/// Something that is wrong with a file that was read all the same. Shown, it is one sentence with file and
-/// place.
+/// Something that is wrong with a file that was read all the same. Shown, it is one sentence with
+/// file and place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
     /// The file.

@@ -1,8 +1,8 @@
 //! Tiles of meshes: PLY and STL files that any program reads.
 //!
-//! What a file is a tile of stands in a comment (PLY) or in the title (STL). Its own vertices come first, in the order
-//! of the whole; after them those vertices of other tiles that its triangles need. No two vertices of the whole are at
-//! one position, so a vertex is known by that.
+//! What a file is a tile of stands in a comment (PLY) or in the title (STL). Its own vertices come
+//! first, in the order of the whole; after them those vertices of other tiles that its triangles
+//! need. No two vertices of the whole are at one position, so a vertex is known by that.
 
 use super::error::{LoadErrorKind, SaveError, SaveErrorKind};
 use super::tile::{MergeError, MergeErrorKind, Tile, check_complete};
@@ -224,11 +224,13 @@ impl TileFile {
     }
 }
 
-/// Joins all tiles of a work to the mesh that it gives undivided, byte for byte, in the file `output`, which is written
-/// in place. Tiles may come in any order. Returns the numbers of vertices and triangles; STL has no vertices.
+/// Joins all tiles of a work to the mesh that it gives undivided, byte for byte, in the file
+/// `output`, which is written in place. Tiles may come in any order. Returns the numbers of
+/// vertices and triangles; STL has no vertices.
 ///
 /// # Errors
-/// When a file is no tile, is of another work, is there twice or not at all, or when reading or writing fails.
+/// When a file is no tile, is of another work, is there twice or not at all, or when reading or
+/// writing fails.
 pub fn merge_tiles(tiles: &[PathBuf], output: &Path) -> Result<(u64, u64), MergeError> {
     let tiles = sorted(tiles)?;
     let at = |kind| MergeError { path: output.to_path_buf(), kind };

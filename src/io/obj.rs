@@ -1,9 +1,10 @@
 //! OBJ, through `tobj`.
 //!
-//! `tobj` reads from [`Filter`], which hands it only what a triangle mesh needs: vertex positions and the
-//! position numbers of faces. So groups, materials, texture coordinates, curves, comments and text that is
-//! not UTF-8 cannot disturb it, and each error has a line. `tobj` numbers vertices by their first use in a
-//! face and drops the others; a face of one corner behind each vertex keeps the file's numbering.
+//! `tobj` reads from [`Filter`], which hands it only what a triangle mesh needs: vertex positions
+//! and the position numbers of faces. So groups, materials, texture coordinates, curves, comments
+//! and text that is not UTF-8 cannot disturb it, and each error has a line. `tobj` numbers vertices
+//! by their first use in a face and drops the others; a face of one corner behind each vertex keeps
+//! the file's numbering.
 
 use std::io::{BufRead, BufReader, Read, Seek, Write};
 
@@ -166,7 +167,8 @@ impl<R: BufRead> Read for Filter<R> {
 }
 
 impl<R: BufRead + Seek> Filter<R> {
-    /// Returns the meaning and the location of `error`. While lines are parsed, the filter stands on the culprit.
+    /// Returns the meaning and the location of `error`. While lines are parsed, the filter stands
+    /// on the culprit.
     fn explain(&mut self, error: tobj::LoadError) -> ReadError {
         if let Some(error) = self.error.take() {
             return error;

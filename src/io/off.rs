@@ -1,7 +1,7 @@
 //! OFF: keyword, counts, vertices, faces.
 //!
-//! Whatever follows the three coordinates on a vertex's line (normal, colour, texture) and the corners on
-//! a face's line (colour) is skipped.
+//! Whatever follows the three coordinates on a vertex's line (normal, colour, texture) and the
+//! corners on a face's line (colour) is skipped.
 
 use std::io::{BufReader, Read, Write};
 
@@ -13,8 +13,8 @@ use super::text::{Text, write_number};
 use crate::mesh::TriMesh;
 use crate::quantity::Precision;
 
-/// The shortest text of a vertex ("0 0 0" and a line end) and of a face ("0" and a line end): what a file
-/// can at most contain is reserved before its content is seen, whatever its header says.
+/// The shortest text of a vertex ("0 0 0" and a line end) and of a face ("0" and a line end): what
+/// a file can at most contain is reserved before its content is seen, whatever its header says.
 const SHORTEST_VERTEX: u64 = 6;
 const SHORTEST_FACE: u64 = 2;
 

@@ -4,19 +4,21 @@
 //! - Three corners are a triangle. One or two corners become a degenerate triangle, which
 //!   [`clean`](crate::mesh::clean) drops and counts. None is nothing.
 //! - Four corners: along the shorter of the diagonals that leave two triangles of like orientation.
-//! - More: ears are cut off one after the other. An ear turns the way the polygon does and no other corner
-//!   lies in it or on its edges. So concave planar polygons do not fold, and a corner in the middle of a
-//!   straight side stays a corner of a proper triangle, as the neighbour across that side needs it.
+//! - More: ears are cut off one after the other. An ear turns the way the polygon does and no other
+//!   corner lies in it or on its edges. So concave planar polygons do not fold, and a corner in the
+//!   middle of a straight side stays a corner of a proper triangle, as the neighbour across that
+//!   side needs it.
 //!
-//! Orientation is judged in the projection along the largest component of the polygon's normal, exactly
-//! (`robust`). A polygon without an ear (it crosses itself or has no area) is finished as a fan.
+//! Orientation is judged in the projection along the largest component of the polygon's normal,
+//! exactly (`robust`). A polygon without an ear (it crosses itself or has no area) is finished as a
+//! fan.
 
 use robust::{Coord, orient2d};
 
 use crate::mesh::TriMesh;
 
-/// Beyond this many corners a polygon is cut as a fan: ears take quadratic time at best, and real faces
-/// have far fewer corners.
+/// Beyond this many corners a polygon is cut as a fan: ears take quadratic time at best, and real
+/// faces have far fewer corners.
 const MOST_CORNERS_FOR_EARS: usize = 4096;
 
 /// A mesh in the making, whose faces are polygons.
@@ -52,8 +54,8 @@ impl PolygonMesh {
         }
     }
 
-    /// Drops the vertices with a coordinate that is not finite, and appends their numbers to `gone`; and the
-    /// faces that have one of them, and returns how many.
+    /// Drops the vertices with a coordinate that is not finite, and appends their numbers to
+    /// `gone`; and the faces that have one of them, and returns how many.
     pub(super) fn drop_non_finite(&mut self, gone: &mut Vec<u32>) -> usize {
         /// The number of a vertex that is dropped. No mesh has as many.
         const GONE: u32 = u32::MAX;
@@ -142,8 +144,8 @@ fn cut_ears(flat: &[Coord<f64>], ring: &mut Vec<usize>, mut emit: impl FnMut([us
         let n = ring.len();
         [ring[(k + n - 1) % n], ring[k], ring[(k + 1) % n]]
     };
-    // Only corners that do not turn the polygon's way can lie in an ear, and cutting ears does not make
-    // new ones.
+    // Only corners that do not turn the polygon's way can lie in an ear, and cutting ears does not
+    // make new ones.
     let blunt: Vec<usize> =
         (0..ring.len()).filter(|&k| turn(flat, corner(ring, k)) <= 0.0).map(|k| ring[k]).collect();
     let (mut k, mut refused) = (0, 0);
@@ -157,7 +159,8 @@ fn cut_ears(flat: &[Coord<f64>], ring: &mut Vec<usize>, mut emit: impl FnMut([us
         } else {
             refused += 1;
         }
-        // Going on behind the ear, not beside it, keeps the triangles from becoming a fan of slivers.
+        // Going on behind the ear, not beside it, keeps the triangles from becoming a fan of
+        // slivers.
         k += 1;
     }
 }
@@ -178,8 +181,8 @@ fn turn(flat: &[Coord<f64>], [a, b, c]: [usize; 3]) -> f64 {
 
 /// The polygon in the coordinate plane in which it is largest, counter-clockwise.
 fn project(points: &[[f64; 3]]) -> Vec<Coord<f64>> {
-    // Newell: the components are twice the areas of the three projections. Relative to the first corner,
-    // so that a small polygon far from the origin keeps its digits.
+    // Newell: the components are twice the areas of the three projections. Relative to the first
+    // corner, so that a small polygon far from the origin keeps its digits.
     let relative = |i: usize| -> [f64; 3] {
         let p = points[i % points.len()];
         std::array::from_fn(|a| p[a] - points[0][a])
@@ -209,8 +212,8 @@ fn square(p: [f64; 3], q: [f64; 3]) -> f64 {
 mod tests {
     use super::*;
 
-    /// The triangles of the plane polygon `outline`, checked: all turn left, they fill its area, and each
-    /// side belongs to exactly one of them.
+    /// The triangles of the plane polygon `outline`, checked: all turn left, they fill its area,
+    /// and each side belongs to exactly one of them.
     fn check(outline: &[[f64; 2]]) -> Vec<[u32; 3]> {
         let n = outline.len() as u32;
         let vertices = outline.iter().map(|p| [p[0], p[1], 3.0 + 0.5 * p[0]]).collect();

@@ -14,8 +14,8 @@ pub struct SaveOptions {
     pub precision: Precision,
 }
 
-/// Saves `mesh` in the file `path`, in the format that belongs to the extension. An existing file is
-/// replaced when the new one is complete, and left as it is when something fails.
+/// Saves `mesh` in the file `path`, in the format that belongs to the extension. An existing file
+/// is replaced when the new one is complete, and left as it is when something fails.
 ///
 /// # Errors
 /// When the extension is unknown, the file cannot be written, or the format cannot hold the mesh.

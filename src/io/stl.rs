@@ -2,10 +2,10 @@
 //!
 //! A binary file may begin with "solid", as an ascii one does, so the size decides first: a file of
 //! exactly 84 + 50 n bytes, n being the count at byte 80, is binary. Where the size is another one:
-//! - Each triangle may be followed by as many bytes as its attributes, a count then, say. They are stepped
-//!   over if that fills the file exactly.
-//! - A size of 84 + 50 m bytes means m triangles, and the count is wrong: programs that write triangles as
-//!   they come leave 0, or the largest number, there. A note says so.
+//! - Each triangle may be followed by as many bytes as its attributes, a count then, say. They are
+//!   stepped over if that fills the file exactly.
+//! - A size of 84 + 50 m bytes means m triangles, and the count is wrong: programs that write
+//!   triangles as they come leave 0, or the largest number, there. A note says so.
 //! - Else bytes behind the last triangle are ignored, and a file that is too short was cut off.
 
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
@@ -22,8 +22,8 @@ use crate::mesh::TriMesh;
 pub(super) const HEAD: usize = 84;
 /// A triangle of a binary file: normal and corners as twelve f32, and two bytes of attributes.
 pub(super) const RECORD: usize = 50;
-/// Number of bytes that are looked at to tell text from binary data. A binary file has zero bytes before
-/// this, at the latest in its count; an ascii file has none at all.
+/// Number of bytes that are looked at to tell text from binary data. A binary file has zero bytes
+/// before this, at the latest in its count; an ascii file has none at all.
 const PROBE: usize = 1024;
 
 /// Reads a mesh from a file of `length` bytes.
@@ -92,8 +92,8 @@ enum Attributes {
     Counted,
 }
 
-/// Whether a file of `length` bytes is filled by `count` triangles with as many bytes behind each as its
-/// attributes say. The reader is at the beginning afterwards.
+/// Whether a file of `length` bytes is filled by `count` triangles with as many bytes behind each
+/// as its attributes say. The reader is at the beginning afterwards.
 fn payloads_fill<R: Read + Seek>(
     reader: &mut BufReader<R>,
     count: u32,
@@ -188,7 +188,8 @@ fn read_ascii<R: BufRead>(reader: R) -> Result<Content, ReadError> {
     }
 }
 
-/// Whether a keyword begins with `word`, in any case. "end solid" is "endsolid", as some programs write.
+/// Whether a keyword begins with `word`, in any case. "end solid" is "endsolid", as some programs
+/// write.
 fn is<R: BufRead>(text: &mut Text<R>, word: &Range<usize>, keyword: &str) -> bool {
     let found = text.bytes(word.clone());
     if found.eq_ignore_ascii_case(keyword.as_bytes()) {

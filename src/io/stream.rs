@@ -1,8 +1,8 @@
 //! A mesh written piece by piece, by someone who never holds all of it.
 //!
-//! A PLY file has all vertices before the first face, and the numbers of both before either. So vertices and faces
-//! go to files without a name beside the target, and are put together at the end. STL takes triangles as they come, and
-//! gets their number at the end.
+//! A PLY file has all vertices before the first face, and the numbers of both before either. So
+//! vertices and faces go to files without a name beside the target, and are put together at the
+//! end. STL takes triangles as they come, and gets their number at the end.
 
 use super::atomic::directory_of;
 use super::error::{SaveError, SaveErrorKind};
@@ -17,7 +17,8 @@ use crate::quantity::Precision;
 /// Bytes collected before they are written.
 const BUFFER: usize = 1 << 20;
 
-/// A mesh file in the making: the same bytes as [`save`](super::save) writes of the mesh as a whole.
+/// A mesh file in the making: the same bytes as [`save`](super::save) writes of the mesh as a
+/// whole.
 #[derive(Debug)]
 pub struct MeshStream {
     path: PathBuf,
@@ -36,8 +37,9 @@ enum Body {
 }
 
 impl MeshStream {
-    /// Creates the file `path`, or empties it: PLY or STL, by its extension. Unlike [`save`](super::save) this writes in
-    /// place; the file is whole only after [`finish`](Self::finish).
+    /// Creates the file `path`, or empties it: PLY or STL, by its extension. Unlike
+    /// [`save`](super::save) this writes in place; the file is whole only after
+    /// [`finish`](Self::finish).
     ///
     /// # Errors
     /// When the extension is another one, or no file can be created there.

@@ -9,15 +9,15 @@ use super::Format;
 use super::error::{LoadErrorKind, Location, ReadError, quote};
 use super::loaded::NonFinite;
 
-/// The longest line that is read. Polygons of a million corners fit; a binary file without line ends
-/// does not get to fill the memory.
+/// The longest line that is read. Polygons of a million corners fit; a binary file without line
+/// ends does not get to fill the memory.
 const LONGEST_LINE: usize = 1 << 26;
 
 /// Mark that some programs write before the first character of UTF-8 text.
 pub(super) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// Reads a text file line by line and a line word by word. Lines end with LF, CRLF or CR; a byte order mark
-/// is skipped.
+/// Reads a text file line by line and a line word by word. Lines end with LF, CRLF or CR; a byte
+/// order mark is skipped.
 pub(super) struct Text<R> {
     reader: R,
     format: Format,
@@ -222,8 +222,8 @@ pub(super) fn read_line(
     }
 }
 
-/// Steps over the LF behind a CR, if there is one; also where a second CR stands between them, as in files
-/// that were converted twice.
+/// Steps over the LF behind a CR, if there is one; also where a second CR stands between them, as
+/// in files that were converted twice.
 fn step_over_line_feed(reader: &mut impl BufRead) -> std::io::Result<bool> {
     let length = match reader.fill_buf()? {
         [b'\n', ..] => 1,
@@ -237,8 +237,8 @@ fn step_over_line_feed(reader: &mut impl BufRead) -> std::io::Result<bool> {
 /// Text after "1." in numbers that are none, as Microsoft's C library writes them.
 const NO_NUMBERS: [&[u8]; 4] = [b"#IND", b"#QNAN", b"#SNAN", b"#INF"];
 
-/// Whether a word that is no number in Rust is what a C library writes where there is none: `-nan(ind)`,
-/// `1.#QNAN`, `-1.#IND00`.
+/// Whether a word that is no number in Rust is what a C library writes where there is none:
+/// `-nan(ind)`, `1.#QNAN`, `-1.#IND00`.
 pub(super) fn is_not_finite(word: &[u8]) -> bool {
     let word = word.strip_prefix(b"-").or(word.strip_prefix(b"+")).unwrap_or(word);
     word.get(..4).is_some_and(|start| start.eq_ignore_ascii_case(b"nan("))
@@ -261,8 +261,9 @@ pub(super) fn parse<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// Writes the shortest text that reads back as `x`. If `x` is exactly an f32, it reads back as that into an
-/// f32, too, but the shortest text of the f32 would not do: it is another number for those who read 64 bits.
+/// Writes the shortest text that reads back as `x`. If `x` is exactly an f32, it reads back as that
+/// into an f32, too, but the shortest text of the f32 would not do: it is another number for those
+/// who read 64 bits.
 pub(super) fn write_number(x: f64, writer: &mut impl Write) -> std::io::Result<()> {
     // Outside of this range the plain notation is longer than the one with an exponent.
     let is_plain = x == 0.0 || (1e-5..1e16).contains(&x.abs());

@@ -67,7 +67,8 @@ pub enum MergeErrorKind {
 }
 
 impl Tile {
-    /// The text in a file, from which it is read again; `note` is what else must be known of the file, without commas.
+    /// The text in a file, from which it is read again; `note` is what else must be known of the
+    /// file, without commas.
     pub(crate) fn text(&self, note: &str) -> String {
         format!(
             "exocarp tile {} of {}, {note}, job {:016x}",

@@ -162,7 +162,8 @@ pub(super) fn check_input(
     Ok(())
 }
 
-/// Whether each triangle has a twin that faces the other way: the two sides of a sheet, as chairs and leaves come.
+/// Whether each triangle has a twin that faces the other way: the two sides of a sheet, as chairs
+/// and leaves come.
 fn is_doubled(mesh: &TriMesh) -> bool {
     // From its lowest vertex on, which leaves the two ways round apart.
     let turned = |&[a, b, c]: &[u32; 3]| match a.min(b).min(c) {

@@ -1,18 +1,20 @@
-//! Identity of an offset, which tells its tiles from those of another: a number made of the input and the settings.
+//! Identity of an offset, which tells its tiles from those of another: a number made of the input
+//! and the settings.
 //!
-//! Machines that share nothing compare it, so it must be the same whatever compiler made the program, and
-//! whatever the fields and types are called in the code. So each setting goes in under a name and as bytes
-//! that are written down here.
+//! Machines that share nothing compare it, so it must be the same whatever compiler made the
+//! program, and whatever the fields and types are called in the code. So each setting goes in under
+//! a name and as bytes that are written down here.
 
 use super::{OffsetSettings, OpenInput};
 use crate::io::Tile;
 use crate::mesh::TriMesh;
 use crate::quantity::{Length, Precision, TileIndex, Tolerance, VoxelSize};
 
-/// Returns the number of the offset of `mesh` with these settings, as this version of exocarp makes it: two offsets with
-/// the same number are the same to the last bit.
+/// Returns the number of the offset of `mesh` with these settings, as this version of exocarp makes
+/// it: two offsets with the same number are the same to the last bit.
 ///
-/// Memory is left out, because it changes nothing of the result, and so is which grids are kept of the band.
+/// Memory is left out, because it changes nothing of the result, and so is which grids are kept of
+/// the band.
 pub fn job(mesh: &TriMesh, settings: &OffsetSettings) -> u64 {
     of_version(env!("CARGO_PKG_VERSION"), mesh, settings)
 }
@@ -75,8 +77,8 @@ fn of_version(version: &str, mesh: &TriMesh, settings: &OffsetSettings) -> u64 {
     hash.state
 }
 
-/// The hash FNV-1a of 64 bits (Fowler, Noll, Vo): it is defined by two constants, and quick enough for
-/// meshes.
+/// The hash FNV-1a of 64 bits (Fowler, Noll, Vo): it is defined by two constants, and quick enough
+/// for meshes.
 struct Fnv1a {
     state: u64,
 }
@@ -143,7 +145,8 @@ mod tests {
 
     #[test]
     fn jobs_are_numbered_alike_by_every_compiler_and_release() {
-        // Tiles carry these numbers: a change here means that tiles of before and after do not join.
+        // Tiles carry these numbers: a change here means that tiles of before and after do not
+        // join.
         let settings = OffsetSettings {
             distance: Length::DiagonalFraction(0.02),
             voxel: VoxelSize::Resolution(512),

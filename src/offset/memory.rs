@@ -41,15 +41,17 @@ impl MemoryError {
         let voxel = settings.lattice.voxel;
         let fixed = slab_bytes(mesh);
         let needed = fixed + leaves * BYTES_PER_LEAF;
-        // The leaves of a layer and its halo lie along curves: they double when the voxel size is halved.
+        // The leaves of a layer and its halo lie along curves: they double when the voxel size is
+        // halved.
         let room = allowed.saturating_sub(fixed).max(allowed / 10).max(1);
         let smallest_voxel = voxel * (leaves * BYTES_PER_LEAF) as f64 / room as f64;
         MemoryError { voxel, needed, allowed, smallest_voxel }
     }
 }
 
-// Everything below is peak memory of the whole program, measured on nine models (armadillo, fandisk, rocker-arm, anchor, bunny,
-// elephant, knot, cheese, dragon) at +2% and -2%, 64 to 1024 voxels. The sums are within 20% of what was taken.
+// Everything below is peak memory of the whole program, measured on nine models (armadillo,
+// fandisk, rocker-arm, anchor, bunny, elephant, knot, cheese, dragon) at +2% and -2%, 64 to 1024
+// voxels. The sums are within 20% of what was taken.
 
 /// Bytes that the program takes by itself, OpenVDB's library and its tables included.
 const BYTES_OF_PROGRAM: u64 = 42_000_000;
@@ -60,7 +62,8 @@ const BYTES_PER_TRIANGLE: f64 = 240.0;
 /// Bytes per cell that the surface passes through: band, crossings, cells and mesh.
 const BYTES_PER_CELL: f64 = 140.0;
 
-/// Bytes per cell for the features and the lists of triangles there, as long as there are more triangles than cells.
+/// Bytes per cell for the features and the lists of triangles there, as long as there are more
+/// triangles than cells.
 const BYTES_PER_DENSE_CELL: f64 = 130.0;
 
 /// Bytes per input triangle for the same, once there are more cells than triangles.
@@ -72,8 +75,8 @@ const BYTES_PER_STORED_CELL: [f64; 2] = [30.0, 25.0];
 /// Bytes per cell of the closest triangles in OpenVDB.
 const BYTES_PER_CLOSEST_CELL: f64 = 60.0;
 
-/// Peak memory per leaf of a slab's band, in bytes: of its cells, with the level set in OpenVDB, and a little more, since what a
-/// slab leaves to the next one is not counted.
+/// Peak memory per leaf of a slab's band, in bytes: of its cells, with the level set in OpenVDB,
+/// and a little more, since what a slab leaves to the next one is not counted.
 const BYTES_PER_LEAF: u64 = 11_500;
 
 /// The leaves whose work fits into this many bytes beside program and input.
@@ -81,7 +84,8 @@ pub(super) fn leaves_within(mesh: &TriMesh, bytes: u64) -> u64 {
     bytes.saturating_sub(slab_bytes(mesh)) / BYTES_PER_LEAF
 }
 
-/// Returns the bytes of program, input and the lists of its triangles: with slabs, and however small they are.
+/// Returns the bytes of program, input and the lists of its triangles: with slabs, and however
+/// small they are.
 fn slab_bytes(mesh: &TriMesh) -> u64 {
     fixed_bytes(mesh) + (mesh.triangles.len() as f64 * BYTES_PER_FEATURE) as u64
 }
@@ -136,15 +140,16 @@ pub(super) fn check_memory(
 /// Cells that a plane of area h^2 passes through, on average over its directions.
 const CELLS_PER_AREA: f64 = 1.5;
 
-/// Cells that the surface passes through for each leaf that the coarse filters keep: they keep leaves up to some 8 voxels beside
-/// it.
+/// Cells that the surface passes through for each leaf that the coarse filters keep: they keep
+/// leaves up to some 8 voxels beside it.
 const CELLS_PER_LEAF: f64 = 49.0;
 
-/// Voxels along the longest side of the lattice that is counted on where the one that is asked for is finer: a few percent of
-/// the work of a band at that resolution.
+/// Voxels along the longest side of the lattice that is counted on where the one that is asked for
+/// is finer: a few percent of the work of a band at that resolution.
 const COARSE: f64 = 256.0;
 
-/// An estimate of the cells that the offset surface passes through, from the leaves that the coarse filters keep.
+/// An estimate of the cells that the offset surface passes through, from the leaves that the coarse
+/// filters keep.
 fn count_cells(
     distance: &SignedDistance,
     settings: &BandSettings,
@@ -159,18 +164,19 @@ fn count_cells(
     Ok(CELLS_PER_LEAF * layers.total() as f64 * (coarse / voxel).powi(2))
 }
 
-/// Refuses what would have more vertices than can be numbered, in slabs or not, before leaves are counted for a long
-/// time.
+/// Refuses what would have more vertices than can be numbered, in slabs or not, before leaves are
+/// counted for a long time.
 pub(super) fn check_countable(mesh: &TriMesh, settings: &BandSettings) -> Result<(), TooManyEdges> {
-    // The area is estimated too high where the surface folds; what gets past is found when edges are numbered.
+    // The area is estimated too high where the surface folds; what gets past is found when edges
+    // are numbered.
     const LEEWAY: f64 = 4.0;
     let cells = offset_area(mesh, settings.r) / settings.lattice.voxel.powi(2);
     if cells > LEEWAY * f64::from(u32::MAX) { Err(TooManyEdges) } else { Ok(()) }
 }
 
-/// An estimate of the offset surface's area. A ball with the mesh's area A grows to A + 2 sqrt(4 pi A) r +
-/// 4 pi r^2 (Steiner's formula for a ball); folds fill up long before the surface exceeds a ball around
-/// everything.
+/// An estimate of the offset surface's area. A ball with the mesh's area A grows to A + 2 sqrt(4 pi
+/// A) r + 4 pi r^2 (Steiner's formula for a ball); folds fill up long before the surface exceeds a
+/// ball around everything.
 fn offset_area(mesh: &TriMesh, r: f64) -> f64 {
     use std::f64::consts::PI;
     let area = measure::area(mesh);

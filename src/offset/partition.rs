@@ -4,8 +4,8 @@ use crate::band::Layers;
 use crate::lattice::{LEAF_DIM, Slab};
 use crate::quantity::TileIndex;
 
-/// The layers `start` to `end`, as a slab. The first and the last reach beyond all layers, so that everything
-/// has an owner.
+/// The layers `start` to `end`, as a slab. The first and the last reach beyond all layers, so that
+/// everything has an owner.
 fn slab(layers: &Layers, halo: i32, start: usize, end: usize) -> Slab {
     let plane = |layer: usize| match layer {
         0 => i32::MIN,
@@ -41,8 +41,8 @@ pub(super) fn share(layers: &Layers, halo: i32, tile: TileIndex) -> Slab {
     slab(layers, halo, end(number - 1), end(number))
 }
 
-/// As few slabs as possible with at most `most` leaves each, halo included. Fails with the leaves of the fullest layer
-/// and its halo where those alone are more.
+/// As few slabs as possible with at most `most` leaves each, halo included. Fails with the leaves
+/// of the fullest layer and its halo where those alone are more.
 pub(super) fn within(layers: &Layers, halo: i32, most: u64) -> Result<Vec<Slab>, u64> {
     let around = (halo / LEAF_DIM) as usize;
     let count = layers.leaves.len();

@@ -74,7 +74,8 @@ pub struct OffsetSettings {
     /// `beyond_tolerance` of the contour's statistics.
     pub tolerance: Option<Tolerance>,
     /// The number of times that the voxel size may be halved where the lattice does not see all of
-    /// the surface ([`MissedFeatures`](crate::MissedFeatures)); 0 leaves it as it is. The whole lattice is refined.
+    /// the surface ([`MissedFeatures`](crate::MissedFeatures)); 0 leaves it as it is. The whole
+    /// lattice is refined.
     pub max_halvings: u32,
     /// The most memory in bytes that the whole program may need, about; more is refused. `None`
     /// for the memory that the system has available.
@@ -149,8 +150,9 @@ pub enum SettingsError {
     },
 }
 
-/// Steps of 64-bit coordinates that a tolerance spans at least: distances are computed in as many bits, and
-/// lose some. Below, all triangles are split as often as they may be, plane ones too, and none comes nearer.
+/// Steps of 64-bit coordinates that a tolerance spans at least: distances are computed in as many
+/// bits, and lose some. Below, all triangles are split as often as they may be, plane ones too, and
+/// none comes nearer.
 const STEPS_OF_F64: f64 = 8.0;
 
 impl OffsetSettings {
@@ -217,7 +219,8 @@ impl OffsetSettings {
         Ok(band)
     }
 
-    /// Checks that the lattice's indices are in range, and the tolerance is one that coordinates can keep.
+    /// Checks that the lattice's indices are in range, and the tolerance is one that coordinates
+    /// can keep.
     pub(super) fn check_range(&self, mesh: &TriMesh, band: &BandSettings) -> Result<(), SettingsError> {
         let bounds = Aabb::around(mesh.vertices.iter().map(|&v| DVec3::from(v)));
         let (voxel, r) = (band.lattice.voxel, band.r);

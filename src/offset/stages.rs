@@ -14,8 +14,8 @@ use crate::subvoxel::{self, MissedCandidates};
 use glam::DVec3;
 use std::time::Instant;
 
-/// The contour of a slab, and what it lacks; `None` when the surface passes nowhere near the slab. What the slab owns
-/// is added to `stored` and to the statistics.
+/// The contour of a slab, and what it lacks; `None` when the surface passes nowhere near the slab.
+/// What the slab owns is added to `stored` and to the statistics.
 pub(super) fn run_stages(
     distance: &SignedDistance,
     settings: &OffsetSettings,
@@ -59,8 +59,8 @@ pub(super) fn run_stages(
     Ok(Some((contour, lost)))
 }
 
-/// The largest index, in size, of a node that the contour can reach, wherever its slab is: how coordinates are rounded
-/// must not depend on the slab.
+/// The largest index, in size, of a node that the contour can reach, wherever its slab is: how
+/// coordinates are rounded must not depend on the slab.
 fn reach(distance: &SignedDistance, settings: &BandSettings) -> u32 {
     let bounds = Aabb::around(distance.mesh().vertices.iter().map(|&v| DVec3::from(v)));
     let ends = grid_nodes(bounds, settings);

@@ -56,7 +56,8 @@ impl<E: From<VdbError>> BandStore<E> for StoredBand {
     }
 
     fn insert(&mut self, batch: &LeafBatch, slab: Slab) -> Result<(), E> {
-        // Runs of leaves that are owned: all of them, unless the batch crosses a plane between slabs.
+        // Runs of leaves that are owned: all of them, unless the batch crosses a plane between
+        // slabs.
         let mut start = 0;
         for run in batch.origins.chunk_by(|&a, &b| slab.owns(a) == slab.owns(b)) {
             let end = start + run.len();

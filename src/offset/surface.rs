@@ -54,8 +54,8 @@ impl ImplicitSurface for OffsetSurface<'_> {
             let height = (p - shape.corners[0]).dot(shape.normal);
             return SurfaceSample { distance: height - self.r, gradient: shape.normal, triangle };
         }
-        // On the side of the triangle that is looked at: which one that is depends on the neighbours only at
-        // r = 0.
+        // On the side of the triangle that is looked at: which one that is depends on the
+        // neighbours only at r = 0.
         let outward = from / length.copysign(self.r);
         SurfaceSample { distance: length.copysign(self.r) - self.r, gradient: outward, triangle }
     }

@@ -66,7 +66,8 @@ fn steiner_errors(r: f64, voxel: f64) -> [f64; 2] {
 
 #[test]
 fn a_dilated_cube_converges_to_steiners_formulas_at_second_order() {
-    // At radii below 8 voxels, vertices that are high above curved parts are taken down: the error is smaller there.
+    // At radii below 8 voxels, vertices that are high above curved parts are taken down: the error
+    // is smaller there.
     let [coarse, fine] = [0.05, 0.025].map(|voxel| steiner_errors(0.5, voxel));
     for (coarse, fine) in coarse.into_iter().zip(fine) {
         assert!(fine < 2e-3, "{fine}");
@@ -153,7 +154,8 @@ fn plain_bisection_finds_the_roots_of_the_hybrid_method() {
         let edges = signs.leaves().flat_map(|leaf| hybrid.numbers.in_leaf(leaf).collect::<Vec<_>>());
         let mut other_roots = 0;
         for (((axis, _), a), b) in edges.zip(&hybrid.samples).zip(&plain.samples) {
-            // Along an edge that grazes the surface the distance changes slowly, and the root is vague.
+            // Along an edge that grazes the surface the distance changes slowly, and the root is
+            // vague.
             let slope = f64::from(a.normal[axis as usize].abs());
             // An edge may have three roots; each method finds one.
             other_roots += usize::from((a.t - b.t).abs() * slope > 1e-6);
@@ -255,8 +257,8 @@ fn an_open_mesh_goes_ahead_by_pseudonormals_and_is_closed_at_jumps() {
 
 #[test]
 fn a_closed_mesh_that_intersects_itself_is_closed_at_jumps() {
-    // Two cubes in one mesh: inside one of them, beside the other's faces, pseudonormals say outside, and half-way
-    // to the first one's faces the sign jumps, far from the surface.
+    // Two cubes in one mesh: inside one of them, beside the other's faces, pseudonormals say
+    // outside, and half-way to the first one's faces the sign jumps, far from the surface.
     let mut mesh = shapes::cube(1);
     let other = shapes::cube(1);
     let first = mesh.vertices.len() as u32;

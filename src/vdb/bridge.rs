@@ -1,9 +1,9 @@
 //! The only bridge to C++: whole slices in and out, no geometry on the other side.
 //!
 //! Origins and nodes cross as `3 n` integers, leaf values as `512 n` numbers (z fastest), masks as
-//! `8 n` words. The safe types in [`grid`](super::grid) and [`file`](super::file) check lengths before a
-//! call, the C++ functions check them again. Every function that can throw returns a `Result` whose
-//! error holds the sentence.
+//! `8 n` words. The safe types in [`grid`](super::grid) and [`file`](super::file) check lengths
+//! before a call, the C++ functions check them again. Every function that can throw returns a
+//! `Result` whose error holds the sentence.
 
 #[cxx::bridge(namespace = "exocarp::vdb")]
 pub(super) mod ffi {
@@ -27,7 +27,8 @@ pub(super) mod ffi {
         Integer,
     }
 
-    /// One entry of a file's metadata; `kind` names the field that holds it. Read ones have `text` in any case.
+    /// One entry of a file's metadata; `kind` names the field that holds it. Read ones have `text`
+    /// in any case.
     struct MetaItem {
         name: String,
         kind: MetaKind,
@@ -192,8 +193,8 @@ unsafe impl Send for ffi::FloatGrid {}
 // SAFETY: as above.
 unsafe impl Send for ffi::Int32Grid {}
 // SAFETY: functions that take the grid by shared reference only read the tree, which holds all its
-// values in memory (no delayed loading), and OpenVDB allows concurrent reading through one accessor per
-// call. The list of leaves, made on first use, is guarded by a mutex.
+// values in memory (no delayed loading), and OpenVDB allows concurrent reading through one accessor
+// per call. The list of leaves, made on first use, is guarded by a mutex.
 unsafe impl Sync for ffi::FloatGrid {}
 // SAFETY: as above.
 unsafe impl Sync for ffi::Int32Grid {}

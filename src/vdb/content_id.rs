@@ -1,15 +1,16 @@
 //! The identifier in a file's header, made from the content.
 //!
-//! OpenVDB gives each file a random UUID, so that the same band would never be the same bytes twice. Here
-//! a file gets a UUID of version 8 ("custom", RFC 9562) that is the hash of all its other bytes. Since the
-//! format has no check sums, and OpenVDB trusts what it reads, the hash also tells a damaged file before
-//! it is read.
+//! OpenVDB gives each file a random UUID, so that the same band would never be the same bytes
+//! twice. Here a file gets a UUID of version 8 ("custom", RFC 9562) that is the hash of all its
+//! other bytes. Since the format has no check sums, and OpenVDB trusts what it reads, the hash also
+//! tells a damaged file before it is read.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-/// First byte of the UUID, which is text: after magic (8), format (4), library (8), has-offsets (1).
+/// First byte of the UUID, which is text: after magic (8), format (4), library (8), has-offsets
+/// (1).
 const START: usize = 21;
 const LENGTH: usize = 36;
 /// The digit of the text that is the UUID's version, and what this module writes there.
@@ -88,8 +89,8 @@ struct Hash {
 }
 
 impl Hash {
-    /// Odd numbers with bits all over (the fractions of the golden ratio and of the root of 3), so that each
-    /// bit of a word reaches the bits above it, and the rotation those below.
+    /// Odd numbers with bits all over (the fractions of the golden ratio and of the root of 3), so
+    /// that each bit of a word reaches the bits above it, and the rotation those below.
     const FACTORS: [u64; 2] = [0x9e37_79b9_7f4a_7c15, 0xbb67_ae85_84ca_a73b];
 
     fn add(&mut self, bytes: &[u8]) {

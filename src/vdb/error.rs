@@ -142,11 +142,13 @@ impl From<cxx::Exception> for VdbError {
     }
 }
 
-/// Returns the text of an exception or a system error, in one line and without what only programmers know.
+/// Returns the text of an exception or a system error, in one line and without what only
+/// programmers know.
 fn sentence(reason: impl ToString) -> String {
     let text = reason.to_string();
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    // OpenVDB's exceptions begin with the name of their class, the system's errors end with a number.
+    // OpenVDB's exceptions begin with the name of their class, the system's errors end with a
+    // number.
     let text = match text.split_once(": ") {
         Some((class, rest)) if class.ends_with("Error") && !class.contains(' ') => rest.to_owned(),
         _ => text,

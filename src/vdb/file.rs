@@ -1,8 +1,8 @@
 //! Writing and reading `.vdb` files.
 //!
 //! Files are archives with grid offsets and statistics in the header (`file_bbox_min`,
-//! `file_voxel_count`, ...), which viewers show without reading the grids. Reading never maps the file
-//! (no delayed loading), so that it may be replaced while its grids are in use.
+//! `file_voxel_count`, ...), which viewers show without reading the grids. Reading never maps the
+//! file (no delayed loading), so that it may be replaced while its grids are in use.
 
 use super::VdbError;
 use super::bridge::ffi;
@@ -14,10 +14,10 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// Compression of the values in a file. In all cases inactive values are left out, since a level set has
-/// two of them only. Bands of 2% at 256 voxels, in MB, without compression, with Zip and with Blosc: fandisk
-/// 4.28, 3.01, 2.86; armadillo 3.99, 3.95, 3.81. Values are distances, whose last digits are noise unless
-/// surfaces are plane.
+/// Compression of the values in a file. In all cases inactive values are left out, since a level
+/// set has two of them only. Bands of 2% at 256 voxels, in MB, without compression, with Zip and
+/// with Blosc: fandisk 4.28, 3.01, 2.86; armadillo 3.99, 3.95, 3.81. Values are distances, whose
+/// last digits are noise unless surfaces are plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Compression {
     /// Blosc: small and quick. Few readers lack it.
@@ -53,8 +53,8 @@ pub enum MetaValue {
 
 /// Options for writing a file, and its metadata.
 ///
-/// Besides what is given here, a file's metadata hold `creator` (program and version), `voxel_size` (model
-/// units) and `half_width` (voxels).
+/// Besides what is given here, a file's metadata hold `creator` (program and version), `voxel_size`
+/// (model units) and `half_width` (voxels).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VdbOptions {
     /// Compression of the values.
@@ -69,15 +69,16 @@ pub struct VdbOptions {
     pub metadata: Vec<(String, MetaValue)>,
 }
 
-/// Writes a level set to the file `path`, whatever its extension: one grid, which every OpenVDB program reads. With the closest
-/// triangles there are two, and programs that know no grids of integers refuse the file (some builds of
-/// OpenVDB's Python module) or the second grid.
+/// Writes a level set to the file `path`, whatever its extension: one grid, which every OpenVDB
+/// program reads. With the closest triangles there are two, and programs that know no grids of
+/// integers refuse the file (some builds of OpenVDB's Python module) or the second grid.
 ///
-/// An existing file is replaced when the new one is complete, and left as it was when something fails.
+/// An existing file is replaced when the new one is complete, and left as it was when something
+/// fails.
 ///
 /// # Errors
-/// If the file cannot be written whole, or the voxel size is below 1.5e-5 model units or beyond what half
-/// floats can hold.
+/// If the file cannot be written whole, or the voxel size is below 1.5e-5 model units or beyond
+/// what half floats can hold.
 pub fn write(
     path: &Path,
     surface: &SurfaceGrid,
@@ -117,10 +118,11 @@ pub(super) fn write_grids(
     replacement.commit().map_err(by_system)
 }
 
-/// Opens the level set `name` of a file; without a name the grid `surface`, or else the only float grid.
+/// Opens the level set `name` of a file; without a name the grid `surface`, or else the only float
+/// grid.
 ///
-/// Any program's file will do, as long as its transform is a uniform scale and a translation, and its
-/// background positive. Fog volumes are refused.
+/// Any program's file will do, as long as its transform is a uniform scale and a translation, and
+/// its background positive. Fog volumes are refused.
 ///
 /// # Errors
 /// If the file cannot be read, or has no such grid, or one that is not a level set.
@@ -141,8 +143,8 @@ pub fn open_surface(path: &Path, name: Option<&str>) -> Result<SurfaceGrid, VdbE
     }
 }
 
-/// Opens the grid of closest triangles `name`; without a name the grid `surface_closest`, or else the only
-/// grid of 32-bit integers.
+/// Opens the grid of closest triangles `name`; without a name the grid `surface_closest`, or else
+/// the only grid of 32-bit integers.
 ///
 /// # Errors
 /// If the file cannot be read or has no such grid.
@@ -152,8 +154,8 @@ pub fn open_closest(path: &Path, name: Option<&str>) -> Result<ClosestGrid, VdbE
     Ok(ClosestGrid { grid })
 }
 
-/// Opens a band that [`write()`] wrote, or another program's level set: see [`open_surface`]. The closest
-/// triangles are there if the file has them for exactly the leaves of the surface.
+/// Opens a band that [`write()`] wrote, or another program's level set: see [`open_surface`]. The
+/// closest triangles are there if the file has them for exactly the leaves of the surface.
 ///
 /// # Errors
 /// Those of [`open_surface`].
@@ -167,7 +169,8 @@ pub fn open_band(path: &Path) -> Result<Band, VdbError> {
     Ok(Band { surface, closest })
 }
 
-/// Number and name of the grid `name` of the type; without a name the `usual` one or else the only one.
+/// Number and name of the grid `name` of the type; without a name the `usual` one or else the only
+/// one.
 fn find(path: &Path, name: Option<&str>, usual: &str, value_type: &str) -> Result<(usize, String), VdbError> {
     let grids = contents(path, ffi::Depth::Names)?.grids;
     let of_type = || grids.iter().enumerate().filter(|(_, g)| g.value_type == value_type);
@@ -223,7 +226,8 @@ fn uniform(placement: &ffi::Placement) -> Option<(f64, [f64; 3])> {
 
 /// The background of a half-float copy: rounded up to 11 significant bits.
 fn half_background(surface: &SurfaceGrid) -> Result<f32, VdbError> {
-    // Below the smallest normal half float, precision falls off; above the largest there is nothing.
+    // Below the smallest normal half float, precision falls off; above the largest there is
+    // nothing.
     const SMALLEST_VOXEL: f64 = 6.103515625e-5;
     const LARGEST: f32 = 65504.0;
     // The bits of an f32 mantissa that a half float lacks.

@@ -7,8 +7,9 @@ use crate::lattice::{Ijk, LEAF_DIM, Lattice, LeafMask};
 use crate::run::RunSettings;
 use cxx::UniquePtr;
 
-/// The name of the grid of closest triangles. After `surface` in the alphabet: OpenVDB lists the grids of a
-/// file by their names, whatever their order in it, and many programs take the first one.
+/// The name of the grid of closest triangles. After `surface` in the alphabet: OpenVDB lists the
+/// grids of a file by their names, whatever their order in it, and many programs take the first
+/// one.
 pub(super) const CLOSEST: &str = "surface_closest";
 
 /// Creator of a grid, as other programs show it.
@@ -27,8 +28,8 @@ pub struct SurfaceGrid {
     half_width: f64,
 }
 
-/// Ids of the closest triangles of the nodes of a [`SurfaceGrid`], -1 elsewhere: an `Int32Grid` named
-/// `surface_closest`, which comes after `surface` in lists of a file's grids.
+/// Ids of the closest triangles of the nodes of a [`SurfaceGrid`], -1 elsewhere: an `Int32Grid`
+/// named `surface_closest`, which comes after `surface` in lists of a file's grids.
 pub struct ClosestGrid {
     pub(super) grid: UniquePtr<ffi::Int32Grid>,
 }
@@ -37,8 +38,8 @@ pub struct ClosestGrid {
 pub struct Band {
     /// The level set.
     pub surface: SurfaceGrid,
-    /// The closest triangles, leaf by leaf those of the surface, where they were asked for. A file from
-    /// another program has none.
+    /// The closest triangles, leaf by leaf those of the surface, where they were asked for. A file
+    /// from another program has none.
     pub closest: Option<ClosestGrid>,
 }
 
@@ -54,11 +55,12 @@ impl SurfaceGrid {
     ///
     /// `half_width` is in voxels; other programs expect 3 or more, contouring needs 1.
     ///
-    /// OpenVDB has no transforms for voxels below 1.5e-5 model units. Such a grid can be used in memory,
-    /// and neither checked nor written.
+    /// OpenVDB has no transforms for voxels below 1.5e-5 model units. Such a grid can be used in
+    /// memory, and neither checked nor written.
     ///
     /// # Errors
-    /// If the voxel size is not positive, the half width less than 1, or their product no normal f32.
+    /// If the voxel size is not positive, the half width less than 1, or their product no normal
+    /// f32.
     pub fn new(lattice: Lattice, half_width: f64) -> Result<Self, VdbError> {
         let voxel = lattice.voxel;
         let wrong = |reason| Err(VdbError::Size { voxel, half_width, reason });
@@ -89,14 +91,14 @@ impl SurfaceGrid {
         self.lattice
     }
 
-    /// World position of node (0, 0, 0): the origin, unless another program placed the grid elsewhere. To
-    /// be added to what [`Lattice::world_from_index`] returns.
+    /// World position of node (0, 0, 0): the origin, unless another program placed the grid
+    /// elsewhere. To be added to what [`Lattice::world_from_index`] returns.
     pub fn translation(&self) -> [f64; 3] {
         self.translation
     }
 
-    /// The value far outside, in model units; far inside it is the negative of that. Values are to be
-    /// clamped to exactly this number.
+    /// The value far outside, in model units; far inside it is the negative of that. Values are to
+    /// be clamped to exactly this number.
     pub fn background(&self) -> f32 {
         self.background
     }
@@ -106,8 +108,8 @@ impl SurfaceGrid {
         self.half_width
     }
 
-    /// Adds leaves: 512 values each in model units, and the mask of active nodes. A leaf that exists at
-    /// an origin is replaced.
+    /// Adds leaves: 512 values each in model units, and the mask of active nodes. A leaf that
+    /// exists at an origin is replaced.
     ///
     /// # Errors
     /// If the lengths do not fit each other, or an origin is not that of a leaf.
@@ -129,11 +131,11 @@ impl SurfaceGrid {
         Ok(self.grid.pin_mut().insert(&flat(origins), values, active.as_flattened())?)
     }
 
-    /// Makes cubes of nodes inside: inactive tiles of value -background, whatever was there before. Each
-    /// cube is given by its lowest node and its side, both multiples of 8.
+    /// Makes cubes of nodes inside: inactive tiles of value -background, whatever was there before.
+    /// Each cube is given by its lowest node and its side, both multiples of 8.
     ///
-    /// Tiles of 8, 128 and 4096 nodes are used as they fit, and no leaf is made. Leaves in a cube are
-    /// dropped.
+    /// Tiles of 8, 128 and 4096 nodes are used as they fit, and no leaf is made. Leaves in a cube
+    /// are dropped.
     ///
     /// # Errors
     /// If the lengths differ, or a cube is not made of whole leaves.
@@ -146,7 +148,8 @@ impl SurfaceGrid {
         Ok(self.grid.pin_mut().fill(&flat(origins), sides, -self.background)?)
     }
 
-    /// Merges tiles of the same value into larger ones, and drops those of the background. Leaves stay.
+    /// Merges tiles of the same value into larger ones, and drops those of the background. Leaves
+    /// stay.
     pub fn prune(&mut self) {
         in_memory(self.grid.pin_mut().prune());
     }
@@ -194,8 +197,8 @@ impl SurfaceGrid {
         inside
     }
 
-    /// Returns the findings of OpenVDB's `tools::checkLevelSet`, one message for each of its nine tests that
-    /// fails; empty if the level set is clean.
+    /// Returns the findings of OpenVDB's `tools::checkLevelSet`, one message for each of its nine
+    /// tests that fails; empty if the level set is clean.
     ///
     /// ```text
     ///  1 value type  2 class  3 uniform transform  4 background at least 3 h  5 no active tiles
@@ -204,8 +207,8 @@ impl SurfaceGrid {
     ///    neighbour of different sign
     /// ```
     ///
-    /// A band of half width below 3 fails test 4 by intent, and a surface with creases fails 9 where phi
-    /// truly has no gradient.
+    /// A band of half width below 3 fails test 4 by intent, and a surface with creases fails 9
+    /// where phi truly has no gradient.
     ///
     /// # Errors
     /// When the run is cancelled, between two tests, and if the voxel size is below 1.5e-5.
@@ -248,8 +251,8 @@ impl ClosestGrid {
         Ok(ClosestGrid { grid: ffi::new_int32_grid(transform_scale(voxel), CLOSEST, CREATOR)? })
     }
 
-    /// Adds leaves: 512 triangle ids each, and the mask of active nodes. A leaf that exists at an origin is
-    /// replaced.
+    /// Adds leaves: 512 triangle ids each, and the mask of active nodes. A leaf that exists at an
+    /// origin is replaced.
     ///
     /// # Errors
     /// If the lengths do not fit each other, or an origin is not that of a leaf.
@@ -274,7 +277,8 @@ impl ClosestGrid {
         in_memory(self.grid.counts()).memory
     }
 
-    /// Origins of the leaves in the order of the tree: that of the [`SurfaceGrid`] with the same leaves.
+    /// Origins of the leaves in the order of the tree: that of the [`SurfaceGrid`] with the same
+    /// leaves.
     pub fn leaf_origins(&self) -> Vec<Ijk> {
         nodes(&in_memory(self.grid.leaf_origins()))
     }
@@ -379,12 +383,13 @@ mod tests {
         })
     }
 
-    /// The background counts at least `half_width` voxels, however that is computed, and hardly more.
+    /// The background counts at least `half_width` voxels, however that is computed, and hardly
+    /// more.
     fn check_background(voxel: f64, half_width: f64) {
         let background = Lattice { voxel }.background(half_width);
         let what = format!("{voxel:e} {half_width}");
-        // As checkLevelSet computes it, and so that a voxel size that went through a product or two does no
-        // harm.
+        // As checkLevelSet computes it, and so that a voxel size that went through a product or two
+        // does no harm.
         assert!(f64::from(background) / voxel >= half_width * (1.0 + 1e-15), "{what}");
         let (single, voxel_f32) = (half_width as f32, voxel as f32);
         assert!(background / voxel_f32 >= single, "{what}");

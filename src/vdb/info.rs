@@ -40,12 +40,13 @@ pub struct GridInfo {
     pub world_bbox: Option<[[f64; 3]; 2]>,
     /// The background value as text.
     pub background: String,
-    /// The grid's metadata: names with values as text. Those that begin with `file_` are statistics.
+    /// The grid's metadata: names with values as text. Those that begin with `file_` are
+    /// statistics.
     pub metadata: Vec<(String, String)>,
 }
 
-/// Reads what the file says about itself and its grids, and counts the active voxels. Any program's grids
-/// will do.
+/// Reads what the file says about itself and its grids, and counts the active voxels. Any program's
+/// grids will do.
 ///
 /// # Errors
 /// If the file cannot be read or is not an OpenVDB file.

@@ -3,7 +3,8 @@
 use super::VdbError;
 use crate::lattice::{Ijk, LEAF_DIM, LEAF_SIZE, LeafMask};
 
-/// Nodes further than this from the origin are refused, so that nothing overflows near the ends of i32.
+/// Nodes further than this from the origin are refused, so that nothing overflows near the ends of
+/// i32.
 const FURTHEST: i32 = 1 << 30;
 
 /// The coordinates of nodes as a flat list.

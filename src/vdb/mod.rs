@@ -1,7 +1,7 @@
 //! The narrow band in OpenVDB: grids in memory and `.vdb` files.
 //!
-//! A [`SurfaceGrid`] is a level set that other programs accept: a `FloatGrid` named `surface`, class
-//! level set, whose transform is the lattice's (world = h * index, no offset), with
+//! A [`SurfaceGrid`] is a level set that other programs accept: a `FloatGrid` named `surface`,
+//! class level set, whose transform is the lattice's (world = h * index, no offset), with
 //!
 //! ```text
 //!  active voxels    exactly those with abs(phi) < background
@@ -9,16 +9,16 @@
 //!  background       a hair above half width * h: checkLevelSet wants 3 h at least, whoever rounds
 //! ```
 //!
-//! phi is in model units, negative inside, and never 0. [`SurfaceGrid::check_level_set`] runs OpenVDB's own
-//! nine tests. A [`ClosestGrid`] of the same leaves holds the ids of the closest triangles, where they were
-//! asked for.
+//! phi is in model units, negative inside, and never 0. [`SurfaceGrid::check_level_set`] runs
+//! OpenVDB's own nine tests. A [`ClosestGrid`] of the same leaves holds the ids of the closest
+//! triangles, where they were asked for.
 //!
-//! Leaves go in and out in batches, as flat slices; [`write()`] and [`open_surface`] are the files. The
-//! same grids and options give the same bytes.
+//! Leaves go in and out in batches, as flat slices; [`write()`] and [`open_surface`] are the files.
+//! The same grids and options give the same bytes.
 //!
-//! Truncated files are recognised whoever wrote them. Damaged ones are if they were written here: their
-//! identifier is a hash of the content. Not promised is what happens with another program's damaged file:
-//! the format has no check sums, and OpenVDB trusts what it reads.
+//! Truncated files are recognised whoever wrote them. Damaged ones are if they were written here:
+//! their identifier is a hash of the content. Not promised is what happens with another program's
+//! damaged file: the format has no check sums, and OpenVDB trusts what it reads.
 
 mod band_file;
 mod bridge;

@@ -1,7 +1,7 @@
 //! OpenVDB's own way to an offset surface: what `exocarp compare` measures the engine against.
 //!
-//! Nothing here is used by the engine. The calls are those that a user of OpenVDB would make, in an arena
-//! of as many threads as the run has.
+//! Nothing here is used by the engine. The calls are those that a user of OpenVDB would make, in an
+//! arena of as many threads as the run has.
 
 use super::VdbError;
 use super::bridge::ffi;
@@ -61,8 +61,8 @@ impl VdbLevelSet {
         Ok(VdbLevelSet { grid })
     }
 
-    /// OpenVDB's `LevelSetFilter::offset`, with our sign: a positive `distance`, in model units, grows.
-    /// (OpenVDB's own sign is the other one.)
+    /// OpenVDB's `LevelSetFilter::offset`, with our sign: a positive `distance`, in model units,
+    /// grows. (OpenVDB's own sign is the other one.)
     ///
     /// # Errors
     /// What OpenVDB says.
@@ -74,7 +74,8 @@ impl VdbLevelSet {
         Ok(self.grid.pin_mut().filter_offset(-distance as f32, scheme, threads(run))?)
     }
 
-    /// OpenVDB's `volumeToMesh`: the surface where the level set has the value `iso`, in model units.
+    /// OpenVDB's `volumeToMesh`: the surface where the level set has the value `iso`, in model
+    /// units.
     ///
     /// # Errors
     /// What OpenVDB says.
@@ -92,8 +93,8 @@ impl VdbLevelSet {
 }
 
 impl Polygons {
-    /// The polygons as triangles, counter-clockwise seen from outside; quads are cut from their first
-    /// corner to their third.
+    /// The polygons as triangles, counter-clockwise seen from outside; quads are cut from their
+    /// first corner to their third.
     ///
     /// # Errors
     /// When memory runs out.

@@ -1,7 +1,8 @@
 //! Tiles of bands: `.vdb` files whose metadata name the share that they hold.
 //!
-//! A tile holds the leaves of its slab and the inside beyond them, so that joining is taking all of both: no value is
-//! computed again. Trees of the same leaves and tiles are the same tree, and the file's bytes are those of the whole.
+//! A tile holds the leaves of its slab and the inside beyond them, so that joining is taking all of
+//! both: no value is computed again. Trees of the same leaves and tiles are the same tree, and the
+//! file's bytes are those of the whole.
 
 use super::bridge::ffi;
 use super::error::VdbError;
@@ -13,7 +14,8 @@ use std::path::{Path, PathBuf};
 /// Name of the metadata entry that makes a file a tile.
 const ENTRY: &str = "tile";
 
-/// The names of the ways to compress, in a tile's text: the format does not keep the choice where it is read.
+/// The names of the ways to compress, in a tile's text: the format does not keep the choice where
+/// it is read.
 const CODECS: [(Compression, &str); 3] =
     [(Compression::Blosc, "blosc"), (Compression::Zip, "zip"), (Compression::None, "none")];
 
@@ -61,11 +63,12 @@ impl TileFile {
     }
 }
 
-/// Joins all tiles of a work to the band that it gives undivided, byte for byte, in the file `output`, which
-/// is replaced whole. Tiles may come in any order. Returns the joined band.
+/// Joins all tiles of a work to the band that it gives undivided, byte for byte, in the file
+/// `output`, which is replaced whole. Tiles may come in any order. Returns the joined band.
 ///
 /// # Errors
-/// When a file is no tile, is of another work, is there twice or not at all, or when reading or writing fails.
+/// When a file is no tile, is of another work, is there twice or not at all, or when reading or
+/// writing fails.
 pub fn merge_bands(tiles: &[PathBuf], output: &Path) -> Result<Band, VdbError> {
     let mut tiles: Vec<TileFile> = tiles.iter().map(|path| TileFile::open(path)).collect::<Result<_, _>>()?;
     tiles.sort_by_key(|tile| tile.tile.index.index());

@@ -1,7 +1,7 @@
 //! The body of an ascii PLY file.
 //!
-//! Not through `ply-rs-bw`, whose grammar refuses what files in the wild have: "1." and ".5", "nan" in a
-//! property that is of no interest, blank lines, and elements that go on on the next line.
+//! Not through `ply-rs-bw`, whose grammar refuses what files in the wild have: "1." and ".5", "nan"
+//! in a property that is of no interest, blank lines, and elements that go on on the next line.
 
 use std::io::BufRead;
 

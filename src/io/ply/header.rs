@@ -1,12 +1,12 @@
 //! The header of a PLY file.
 //!
 //! `ply-rs-bw` parses it. Comments are taken out before: they may be in any encoding. Properties of
-//! no interest get names of their own before, as it refuses names like "distance[<0.1]" and would merge
-//! two of the same name. Elements and properties that matter must have different names.
+//! no interest get names of their own before, as it refuses names like "distance[<0.1]" and would
+//! merge two of the same name. Elements and properties that matter must have different names.
 //!
-//! Lines that begin with no keyword of PLY are skipped, too: old programs wrote comments without the word.
-//! Not those that could be an element or a property with its keyword misspelt, and only if the body fits (see
-//! [`read`](super::read)).
+//! Lines that begin with no keyword of PLY are skipped, too: old programs wrote comments without
+//! the word. Not those that could be an element or a property with its keyword misspelt, and only
+//! if the body fits (see [`read`](super::read)).
 
 use std::collections::HashSet;
 use std::io::{BufRead, Read};
@@ -27,8 +27,8 @@ pub(super) const COORDINATES: [&str; 3] = ["x", "y", "z"];
 /// The name that a property of the user's choice has here.
 pub(super) const WANTED: &str = "wanted";
 
-/// The longest header that is read, comments included. Real ones are a few hundred bytes; a file that has
-/// no end of the header is not read to its end to find out.
+/// The longest header that is read, comments included. Real ones are a few hundred bytes; a file
+/// that has no end of the header is not read to its end to find out.
 const LONGEST_HEADER: u64 = 1 << 20;
 
 /// The contents of a header.
@@ -71,8 +71,8 @@ impl SkippedLines {
 /// Description of a header's line, for errors.
 const EXPECTED: &str = "a PLY header line (format, element, property)";
 
-/// Reads the header; `reader` then stands on the first byte of the body. The scalar property `wanted` of the
-/// vertices is named [`WANTED`] in it.
+/// Reads the header; `reader` then stands on the first byte of the body. The scalar property
+/// `wanted` of the vertices is named [`WANTED`] in it.
 pub(super) fn read<R: BufRead>(reader: &mut R, wanted: Option<&str>) -> Result<Header, ReadError> {
     let mut kept = Kept { wanted: wanted.map(|name| name.as_bytes().to_vec()), ..Kept::default() };
     let (mut bytes, mut lines) = (0u64, 0u64);
@@ -81,7 +81,8 @@ pub(super) fn read<R: BufRead>(reader: &mut R, wanted: Option<&str>) -> Result<H
         reader.consume(BYTE_ORDER_MARK.len());
     }
     let mut line = Vec::new();
-    // All lines end as the first one does: what stands behind the last CR may be data that look like LF.
+    // All lines end as the first one does: what stands behind the last CR may be data that look
+    // like LF.
     let mut end = None;
     loop {
         line.clear();
@@ -140,7 +141,8 @@ struct Kept {
     /// The names of the elements, and of the properties of the last one that matter.
     elements: HashSet<Vec<u8>>,
     properties: HashSet<Vec<u8>>,
-    /// The name of the property of the vertices that is wanted, and whether the last element is theirs.
+    /// The name of the property of the vertices that is wanted, and whether the last element is
+    /// theirs.
     wanted: Option<Vec<u8>>,
     of_vertices: bool,
     skipped: Option<SkippedLines>,
@@ -206,8 +208,8 @@ impl Kept {
     }
 }
 
-/// Whether a line that begins with no keyword could be an element ("elemnt face 12") or a property ("propery
-/// float x").
+/// Whether a line that begins with no keyword could be an element ("elemnt face 12") or a property
+/// ("propery float x").
 fn may_define(line: &[u8]) -> bool {
     const TYPES: &[&str] = &[
         "list", "char", "uchar", "short", "ushort", "int", "uint", "float", "double", "int8", "uint8",

@@ -1,9 +1,9 @@
 //! PLY: the header, the binary body and the ascii body in a file each, and the writer.
 //!
-//! Read: `x y z` of element `vertex`, the list `vertex_indices` or `vertex_index` of element `face`, and
-//! the same list of element `tristrips` (-1 starts a new strip). All else is skipped. Header and binary
-//! body go through `ply-rs-bw`. Numbers in an ascii body are taken with all their digits, also where the
-//! header calls them `float`.
+//! Read: `x y z` of element `vertex`, the list `vertex_indices` or `vertex_index` of element
+//! `face`, and the same list of element `tristrips` (-1 starts a new strip). All else is skipped.
+//! Header and binary body go through `ply-rs-bw`. Numbers in an ascii body are taken with all their
+//! digits, also where the header calls them `float`.
 
 mod ascii;
 mod binary;
@@ -23,8 +23,8 @@ use header::{COORDINATES, Header, WANTED};
 
 /// Reads a mesh from a file of `length` bytes.
 ///
-/// Lines of the header are skipped only where the body is exactly what the others say: then none of them was
-/// needed.
+/// Lines of the header are skipped only where the body is exactly what the others say: then none of
+/// them was needed.
 pub(super) fn read<R: Read + Seek>(source: R, length: u64) -> Result<Content, ReadError> {
     let mut reader = BufReader::with_capacity(1 << 16, source);
     let header = header::read(&mut reader, None)?;
@@ -33,7 +33,8 @@ pub(super) fn read<R: Read + Seek>(source: R, length: u64) -> Result<Content, Re
     Ok(Content { mesh, non_finite, passed: passed.into_iter().collect() })
 }
 
-/// The values of the vertices' scalar property `name`, in the order of the file; `None` where there is none.
+/// The values of the vertices' scalar property `name`, in the order of the file; `None` where there
+/// is none.
 pub(super) fn vertex_property<R: Read + Seek>(
     source: R,
     length: u64,
@@ -117,8 +118,8 @@ enum Wanted {
     Property,
 }
 
-/// The mesh in the making. The faces may come before the vertices, so numbers are checked against the
-/// header.
+/// The mesh in the making. The faces may come before the vertices, so numbers are checked against
+/// the header.
 struct Body {
     mesh: PolygonMesh,
     vertex_count: u64,

@@ -1,5 +1,5 @@
-//! Files that are wrong in a way that leaves no doubt of the mesh: they are read, with a note where it may
-//! matter.
+//! Files that are wrong in a way that leaves no doubt of the mesh: they are read, with a note where
+//! it may matter.
 
 use super::*;
 
