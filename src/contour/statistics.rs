@@ -25,7 +25,7 @@ pub struct ContourStatistics {
     pub recovered: u64,
     /// Vertices that belong outside of their cells and could not be moved there.
     pub refused: u64,
-    /// Vertices merged into one that was to be moved to a place that they were in the way of.
+    /// Vertices removed by edge collapses, because they were in the way of a relocated one.
     pub merged: u64,
     /// Edges flipped along a crease.
     pub flipped: u64,

@@ -8,7 +8,7 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug)]
 pub struct CurvatureBound {
     creases: Creases,
-    /// In one over model units.
+    /// The bound, in one over model units.
     curvature: f64,
 }
 

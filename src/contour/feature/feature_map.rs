@@ -17,7 +17,7 @@ pub struct FeatureVertex {
 /// All feature vertices, found by a rank structure over the vertex numbers instead of a hash map.
 #[derive(Debug)]
 pub struct FeatureMap {
-    /// By ascending number.
+    /// The vertices by ascending number.
     all: Vec<FeatureVertex>,
     /// The numbers.
     vertices: VertexSet,

@@ -1,4 +1,4 @@
-//! Which patches are changed together: leaf by leaf, in eight rounds, by a colour of each leaf.
+//! The schedule of patches: leaf by leaf, in eight rounds, by a colour of each leaf.
 //!
 //! Leaves of one colour are so far apart that they touch no common triangle. They are worked on in
 //! parallel, and the result does not depend on the number of threads.

@@ -1,6 +1,8 @@
 //! The test of Ju and Udeshi (2006) for a diagonal, by intersections of polygon edges with
-//! triangles; the convex/concave analysis of [`envelope`](super::envelope) replaces it (\[LW11\]
-//! section VI). It is here to be measured against (Table VI).
+//! triangles.
+//!
+//! The convex/concave analysis of [`envelope`](super::envelope) replaces it (\[LW11\] section VI).
+//! The test is here to be measured against (Table VI).
 //!
 //! The diagonal ac of the quad abcd around a grid edge e = v+ v- passes e on the side of b or on
 //! that of d:
@@ -12,9 +14,9 @@
 //!      b ----- c
 //! ```
 //!
-//! On the side of b it stays in the envelope when it crosses the triangle (b, v+, v-), the wall
-//! between the tetrahedra (a, b, v+, v-) and (b, c, v+, v-). The triangle abc is then in these two.
-//! The triangle acd is in the envelope when e crosses it: it falls apart into pieces in the four
+//! On the side of b the diagonal stays in the envelope when it crosses the triangle (b, v+, v-), the
+//! wall between the tetrahedra (a, b, v+, v-) and (b, c, v+, v-). The triangle abc is then in these
+//! two. The triangle acd is in the envelope when e crosses it: it falls apart into parts in the four
 //! tetrahedra.
 //!
 //! Both tests are strict. A diagonal that meets the grid edge itself crosses neither wall and is

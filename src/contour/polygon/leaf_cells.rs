@@ -17,7 +17,7 @@ pub struct LeafCells<'a> {
     cells: &'a Cells<'a>,
     table: &'static CaseTable,
     leaf: LeafId,
-    /// By cell, z fastest. Only entries of active cells mean something.
+    /// The cases by cell, z fastest. Only entries of active cells mean something.
     cases: [CellCase; WIDTH * WIDTH * WIDTH],
     /// The face vertices, if there are any on these cells.
     faces: Option<&'a FaceVertices>,

@@ -79,7 +79,7 @@ pub struct CellVertex {
 
 /// Places the vertex of sheet number `sheet` of a cell. `crossing` returns the crossing of each of
 /// the sheet's edges.
-pub fn place<'a>(
+pub fn place_vertex<'a>(
     lattice: &RoundedLattice,
     cell: Ijk,
     case: &Case,

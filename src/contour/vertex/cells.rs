@@ -14,9 +14,9 @@ pub struct Cells<'a> {
     /// The vertices of cells in which the sign jumps
     /// ([`Crossing::is_jump`](crate::edge::Crossing::is_jump)): the surface is elsewhere.
     pub jumps: VertexSet,
-    /// By cell.
+    /// The cases by cell.
     cases: Vec<CellCase>,
-    /// By leaf whether any of its cells may be ambiguous
+    /// For each leaf, whether any of its cells may be ambiguous
     /// ([`CornerSigns::maybe_ambiguous`](crate::contour::cell::CornerSigns::maybe_ambiguous)).
     maybe_ambiguous: Vec<bool>,
 }

@@ -53,7 +53,7 @@ struct LeafVertexSolver<'a> {
 impl LeafVertices {
     /// Fills in the cases and the vertices of the cells of one leaf, and returns what else is
     /// found.
-    pub fn place(
+    pub fn solve(
         context: &CellContext<'_>,
         leaf: LeafId,
         cases: &mut [CellCase],
@@ -140,7 +140,7 @@ impl LeafVertexSolver<'_> {
         let CellContext { signs, lattice, numbers, surface, .. } = self.context;
         let at = signs.origin(self.leaf) + local;
         let crossing = |edge| self.crossings.of_cell(local.0, edge);
-        let placed = cell_vertex::place(lattice, at, case, sheet, crossing, *surface);
+        let placed = cell_vertex::place_vertex(lattice, at, case, sheet, crossing, *surface);
         let number = first + sheet;
         self.vertices[number] = placed.position;
         self.found.clamped += u16::from(placed.placement == Placement::Clamped);

@@ -1,5 +1,5 @@
-//! The vertices: of each sheet within its cell, and of faces where a connection would get in
-//! another sheet's way.
+//! The vertices: one for each sheet, within its cell, and one on each face where a connection would
+//! get in another sheet's way.
 
 mod cell_vertex;
 mod cells;

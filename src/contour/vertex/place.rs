@@ -108,7 +108,7 @@ fn place_cell_vertices<'a>(
         .with_max_len(SHARE)
         .map(|((&leaf, cases), vertices)| {
             phase.advance(1)?;
-            Ok(LeafVertices::place(&context, leaf, cases, vertices))
+            Ok(LeafVertices::solve(&context, leaf, cases, vertices))
         })
         .collect::<Result<_, Cancelled>>()?;
     let mut statistics = ContourStatistics::default();

@@ -54,7 +54,7 @@ pub struct QefBatch {
 #[derive(Debug, Default)]
 pub struct Solved {
     points: [[f64; LANES]; 3],
-    /// By cell 1 where the surface is smooth, else 0.
+    /// 1 for each cell in which the surface is smooth, else 0.
     is_smooth: [f64; LANES],
 }
 

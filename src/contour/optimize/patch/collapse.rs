@@ -5,7 +5,7 @@
 //!     / \ / \ / \          / \  |  / \
 //!    .---a---b---.   ->   .---\ | /---.
 //!     \ / \ / \ /          \ / \|/ \ /
-//!      .---d---.            .---a---.      (d keeps its own place)
+//!      .---d---.            .---a---.      (d keeps its position)
 //! ```
 //!
 //! The link condition: the neighbours that the two ends have in common are c and d alone, and the

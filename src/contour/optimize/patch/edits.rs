@@ -5,7 +5,7 @@ use super::triangle::{OWN_HOME, PatchEdge, PatchTriangle};
 use crate::contour::mesh::{NEW_TRIANGLE, NEW_VERTEX};
 
 impl Patch {
-    /// Moves a vertex to `to`, which must be rounded, if the mesh stays embedded.
+    /// Moves a vertex to the rounded position `to`, if the mesh stays embedded.
     pub fn try_move(&mut self, vertex: u32, to: [f64; 3]) -> bool {
         let moved = |n: usize| {
             let mut triangle = self.triangles[n];
@@ -24,8 +24,8 @@ impl Patch {
         true
     }
 
-    /// Puts a new vertex at `at`, which must be rounded, in place of a triangle's interior, if the
-    /// mesh stays embedded. Returns its number.
+    /// Splits triangle `n` by a new vertex at the rounded position `at`, if the mesh stays embedded.
+    /// Returns the vertex's number.
     pub fn try_split_face(&mut self, n: usize, at: [f64; 3]) -> Option<u32> {
         let t = self.triangles[n];
         let new = self.new_vertex()?;
@@ -40,8 +40,8 @@ impl Patch {
         self.insert(&parts, new, at)
     }
 
-    /// Puts a new vertex at `at`, which must be rounded, in place of an edge's interior, if the
-    /// mesh stays embedded. Returns its number.
+    /// Splits an edge by a new vertex at the rounded position `at`, if the mesh stays embedded.
+    /// Returns the vertex's number.
     pub fn try_split_edge(&mut self, edge: &PatchEdge, at: [f64; 3]) -> Option<u32> {
         let PatchEdge { triangles: [first, second], a, b, c, d } = *edge;
         let new = self.new_vertex()?;
@@ -95,7 +95,7 @@ impl Patch {
         Some(vertex)
     }
 
-    /// Replaces an edge by the other diagonal of its two triangles, if the mesh stays embedded.
+    /// Flips an edge to the other diagonal of its two triangles, if the mesh stays embedded.
     pub fn try_flip(&mut self, edge: &PatchEdge) -> bool {
         let PatchEdge { triangles: [first, second], a, b, c, d } = *edge;
         if self.are_neighbours(c.0, d.0) {
