@@ -4,7 +4,7 @@ use super::finish::shape::{self, ContourFace, MovableFaces, ShapeSettings};
 use super::outcome::Outcome;
 use super::patch::boundary::Boundary;
 use super::settings::ModelUnits;
-use super::solid::crossings;
+use super::solid::crossings::{self, SolidCrossings};
 use super::solid::nodes::{NodeRange, Nodes};
 use super::solid::region::Solid;
 use super::solid::vertex_pillars::VertexPillars;
@@ -134,16 +134,7 @@ impl Attempts<'_> {
         };
 
         let started = Instant::now();
-        let face = |&edge: &u32| ContourFace {
-            of: found.faces[edge as usize],
-            point: found.points[edge as usize],
-            normal: DVec3::from(found.crossings.samples[edge as usize].normal.map(f64::from)),
-        };
-        let movable = MovableFaces {
-            first: surface.triangles.len(),
-            faces: edges.iter().map(face).collect(),
-            first_vertex: surface.vertices.len() as u32,
-        };
+        let movable = movable_faces(surface, &found, &edges);
         let shape = ShapeSettings {
             max_rounds: settings.rounds,
             normals: settings.section_normals,
@@ -153,5 +144,20 @@ impl Attempts<'_> {
             run.install(|| shape::process_shape(&mut mesh, movable, &solid, voxel, shape, run))?;
         times.shape += started.elapsed().as_secs_f64();
         Ok(Outcome::Done(mesh))
+    }
+}
+
+/// Returns the faces of the contour, whose triangles follow those of `surface`. `edges` has the
+/// number of each triangle's lattice edge.
+fn movable_faces(surface: &TriMesh, found: &SolidCrossings, edges: &[u32]) -> MovableFaces {
+    let face = |&edge: &u32| ContourFace {
+        of: found.faces[edge as usize],
+        point: found.points[edge as usize],
+        normal: DVec3::from(found.crossings.samples[edge as usize].normal.map(f64::from)),
+    };
+    MovableFaces {
+        first: surface.triangles.len(),
+        faces: edges.iter().map(face).collect(),
+        first_vertex: surface.vertices.len() as u32,
     }
 }

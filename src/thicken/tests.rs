@@ -1,11 +1,13 @@
-//! Thickened patches in scalar code: the same bytes as in the machine's vectors.
+//! Thickened patches: the same bytes in scalar code as in the machine's vectors, and cancelled in
+//! each phase.
 
-use super::{Side, ThickenSettings, thicken};
+use super::{Side, ThickenError, ThickenSettings, thicken};
 use crate::geom::simd::scalar::in_vectors_and_scalars;
 use crate::mesh::{TriMesh, shapes};
 use crate::quantity::Length;
-use crate::run::RunSettings;
+use crate::run::{CancelToken, Phase, Progress, RunSettings};
 use glam::{DQuat, DVec3};
+use std::sync::Arc;
 
 fn run() -> RunSettings {
     RunSettings::with_threads(2).unwrap()
@@ -38,6 +40,38 @@ fn thickened_patches_are_the_same_in_scalar_code() {
                 mesh.vertices.iter().map(|v| v.map(f64::to_bits)).collect()
             };
             assert!(bits(&in_vectors) == bits(&in_scalars), "{what}: the vertices differ");
+        }
+    }
+}
+
+/// Cancels a run when one of its phases begins.
+struct CancelAt {
+    phase: Phase,
+    cancel: CancelToken,
+}
+
+impl Progress for CancelAt {
+    fn begin(&self, phase: Phase, _: u64) {
+        if phase == self.phase {
+            self.cancel.cancel();
+        }
+    }
+
+    fn advance(&self, _: Phase, _: u64) {}
+
+    fn end(&self, _: Phase) {}
+}
+
+#[test]
+fn a_cancelled_run_says_so_in_each_phase() {
+    let (open, closed) = (shapes::wave(12), shapes::cube(4));
+    for patch in [&open, &closed] {
+        for phase in [Phase::Hierarchy, Phase::Band, Phase::Edges, Phase::Contour] {
+            let cancel = CancelToken::default();
+            let progress = Arc::new(CancelAt { phase, cancel: cancel.clone() });
+            let run = run().with_cancel(cancel).with_progress(progress);
+            let made = thicken(patch, &ThickenSettings::default(), &run);
+            assert!(matches!(made, Err(ThickenError::Cancelled)), "{phase:?}: {made:?}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! An embedded mesh whose vertices move only where no intersection arises.
 //!
-//! As in the patches of the contour ([`contour`](crate::contour)), a vertex is moved only if its
-//! triangles keep an area and their side, and meet neither another triangle nor each other. Exact
+//! A vertex is moved only if its triangles keep an area and their side, and meet neither another
+//! triangle nor each other, as in the patches of the [`contour`](crate::contour). Exact
 //! predicates decide, on the coordinates that will be written. So the mesh stays embedded, whatever
 //! a move is for.
 

@@ -38,8 +38,10 @@ impl Boundary {
     /// Finds the boundary of `mesh`.
     ///
     /// # Errors
-    /// When an edge has more than two triangles or two that run the same way, or a vertex inside
-    /// the surface is one of another part, too.
+    /// - [`PatchError::NonManifoldEdge`]: an edge has more than two triangles.
+    /// - [`PatchError::Misoriented`]: the two triangles of an edge run the same way.
+    /// - [`PatchError::NonManifoldVertex`]: a vertex inside the surface is one of another part,
+    ///   too.
     pub fn new(mesh: &TriMesh, topology: &Topology) -> Result<Boundary, PatchError> {
         let defects = topology.defects();
         let ends = |edge: [u32; 2]| edge.map(|v| mesh.vertices[v as usize]);

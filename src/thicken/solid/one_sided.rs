@@ -10,8 +10,9 @@ pub(crate) struct OneSided<'a> {
     /// closest to them. Higher nodes are left out: whatever feature of these triangles they are
     /// closest to, they are on its positive side.
     pub max_height: f64,
-    /// Distances, in model units, between which nodes are inside the solid if they are under the
-    /// planes of all triangles that can be closest to them, and none of these is at the boundary.
+    /// Least and largest distance, in model units, of nodes that are sure to be inside the solid.
+    /// Such nodes must be under the planes of all triangles that can be closest to them, and none
+    /// of these triangles may be at the boundary.
     pub sure_inside: [f64; 2],
     /// Per triangle, whether a vertex of it is on the boundary.
     pub at_boundary: &'a [bool],
