@@ -227,7 +227,7 @@ pub use quantity::{Length, ParseQuantityError, Precision, TileIndex, Tolerance, 
 pub use run::{CancelToken, Cancelled, Phase, Progress, RunSettings, ThreadError};
 pub use subvoxel::MissedFeatures;
 pub use thicken::{
-    Obstacle, PatchError, SectionNormals, Side, ThickenError, ThickenResult, ThickenSettings,
+    Obstacle, PatchError, PatchSide, SectionNormals, ThickenError, ThickenResult, ThickenSettings,
     ThickenSettingsError, thicken,
 };
 

@@ -6,7 +6,7 @@ use common::thickened::check;
 use exocarp::internals::mesh::Topology;
 use exocarp::internals::mesh::measure::{area, signed_volume};
 use exocarp::{
-    Length, PatchError, RunSettings, SectionNormals, Side, ThickenError, ThickenSettings,
+    Length, PatchError, PatchSide, RunSettings, SectionNormals, ThickenError, ThickenSettings,
     ThickenSettingsError, TriMesh, VoxelSize, shapes, thicken,
 };
 use std::collections::BTreeSet;
@@ -16,7 +16,7 @@ fn run() -> RunSettings {
     RunSettings::with_threads(2).unwrap()
 }
 
-fn settings(thickness: f64, voxel: f64, side: Side) -> ThickenSettings {
+fn settings(thickness: f64, voxel: f64, side: PatchSide) -> ThickenSettings {
     ThickenSettings {
         thickness: Length::Units(thickness),
         voxel: Some(VoxelSize::Units(voxel)),
@@ -66,11 +66,11 @@ fn refused(patch: &TriMesh, settings: &ThickenSettings) -> ThickenError {
 
 #[test]
 fn a_square_becomes_a_plate_of_its_thickness() {
-    for (n, side) in [(1, Side::Inner), (8, Side::Outer)] {
+    for (n, side) in [(1, PatchSide::Inner), (8, PatchSide::Outer)] {
         let result = check(&square(n), &settings(0.2, 0.047, side));
         let volume = signed_volume(&result.mesh);
         assert!((volume / 0.8 - 1.0).abs() < 0.005, "{volume}");
-        let sign = if side == Side::Inner { -1.0 } else { 1.0 };
+        let sign = if side == PatchSide::Inner { -1.0 } else { 1.0 };
         for v in &result.mesh.vertices {
             assert!((-1e-6..0.2 + 1e-6).contains(&(sign * v[2])), "{v:?}");
         }
@@ -80,7 +80,7 @@ fn a_square_becomes_a_plate_of_its_thickness() {
 /// Volume of what lies within r of a convex dome on its outer side (or on its inner side) with the
 /// closest point off the boundary, by Steiner's formula for polyhedra: area, edges with their outer
 /// angles, vertices with their angle defects.
-fn steiner(dome: &TriMesh, r: f64, side: Side) -> f64 {
+fn steiner(dome: &TriMesh, r: f64, side: PatchSide) -> f64 {
     let topology = Topology::new(dome);
     let corner = |v: u32| glam::DVec3::from(dome.vertices[v as usize]);
     let normal = |t: usize| {
@@ -98,7 +98,7 @@ fn steiner(dome: &TriMesh, r: f64, side: Side) -> f64 {
                 Some(other) => {
                     // Half of it, since the edge comes once from each side.
                     let half = 0.5 * normal(t).angle_between(normal(other));
-                    let turned = if side == Side::Outer { half } else { half.tan() };
+                    let turned = if side == PatchSide::Outer { half } else { half.tan() };
                     edges += 0.5 * turned * corner(a).distance(corner(b));
                 }
                 None => [a, b].iter().for_each(|&v| defects[v as usize] = f64::NAN),
@@ -106,7 +106,7 @@ fn steiner(dome: &TriMesh, r: f64, side: Side) -> f64 {
         }
     }
     let vertices: f64 = defects.iter().filter(|d| d.is_finite()).sum();
-    let sign = if side == Side::Outer { 1.0 } else { -1.0 };
+    let sign = if side == PatchSide::Outer { 1.0 } else { -1.0 };
     area(dome) * r + sign * edges * r * r + vertices * r.powi(3) / 3.0
 }
 
@@ -116,7 +116,7 @@ fn a_hemisphere_has_the_volume_of_steiner() {
         let (s, c) = (0.02 + 0.98 * v).mul_add(0.5 * PI, 0.0).sin_cos();
         [s * (TAU * u).cos(), -s * (TAU * u).sin(), c]
     });
-    for side in [Side::Inner, Side::Outer] {
+    for side in [PatchSide::Inner, PatchSide::Outer] {
         let result = check(&dome, &settings(0.15, 0.05, side));
         let (volume, expected) = (signed_volume(&result.mesh), steiner(&dome, 0.15, side));
         assert!((volume / expected - 1.0).abs() < 0.005, "{side:?}: {volume} {expected}");
@@ -129,7 +129,7 @@ fn shape_processing_sharpens_the_edges_of_the_section() {
     let (x, y) = (glam::DVec3::new(0.8, 0.5, 0.3).normalize(), glam::DVec3::new(-0.5, 0.8, 0.0).normalize());
     let tilted = surface(6, 6, false, |u, v| ((2.0 * u - 1.0) * x + (2.0 * v - 1.0) * y).to_array());
     let with = |rounds, section_normals| {
-        let processed = ThickenSettings { rounds, section_normals, ..settings(0.3, 0.07, Side::Inner) };
+        let processed = ThickenSettings { rounds, section_normals, ..settings(0.3, 0.07, PatchSide::Inner) };
         let result = check(&tilted, &processed);
         let missing = (1.0 - signed_volume(&result.mesh) / (0.3 * area(&tilted))).abs();
         (missing, result.statistics.shape)
@@ -154,7 +154,7 @@ fn surfaces_with_several_loops_and_parts() {
         let r = 0.5 + 0.5 * v;
         [r * (TAU * u).cos(), r * (TAU * u).sin(), 3.0]
     });
-    for side in [Side::Inner, Side::Outer] {
+    for side in [PatchSide::Inner, PatchSide::Outer] {
         check(&both(both(saddle.clone(), tube.clone()), ring.clone()), &settings(0.2, 0.06, side));
     }
 }
@@ -163,8 +163,8 @@ fn surfaces_with_several_loops_and_parts() {
 fn a_closed_mesh_becomes_a_shell() {
     let cube = (shapes::by_name("box").unwrap().make)(4);
     let whole = signed_volume(&cube);
-    let inner = check(&cube, &settings(0.1, 0.04, Side::Inner));
-    let outer = check(&cube, &settings(0.1, 0.04, Side::Outer));
+    let inner = check(&cube, &settings(0.1, 0.04, PatchSide::Inner));
+    let outer = check(&cube, &settings(0.1, 0.04, PatchSide::Outer));
     // A wall inward: the cube less a cube.
     let wall = whole - (2.0f64 - 0.2).powi(3);
     assert!((signed_volume(&inner.mesh) / wall - 1.0).abs() < 0.005, "{}", signed_volume(&inner.mesh));
@@ -172,7 +172,7 @@ fn a_closed_mesh_becomes_a_shell() {
     let wall = area(&cube) * 0.1 + 24.0 * PI / 4.0 * 0.01 + 4.0 / 3.0 * PI * 0.001;
     assert!((signed_volume(&outer.mesh) / wall - 1.0).abs() < 0.005, "{}", signed_volume(&outer.mesh));
     // Nothing is left within a wall as thick as the box: it is solid.
-    let solid = check(&cube, &settings(10.0, 1.0, Side::Inner));
+    let solid = check(&cube, &settings(10.0, 1.0, PatchSide::Inner));
     assert_eq!(solid.statistics.triangles.new, 0);
 }
 
@@ -187,7 +187,7 @@ fn parts_that_touch_in_a_vertex_hang_together() {
     };
     let kept = board.triangles.iter().copied().filter(quarter).collect();
     board.triangles = kept;
-    for side in [Side::Inner, Side::Outer] {
+    for side in [PatchSide::Inner, PatchSide::Outer] {
         check(&board, &settings(0.3, 0.07, side));
     }
 }
@@ -222,7 +222,7 @@ fn handles(mesh: &TriMesh) -> i64 {
 #[test]
 fn holes_that_the_lattice_cannot_see_are_closed_and_said() {
     let sieve = sieve();
-    for side in [Side::Inner, Side::Outer] {
+    for side in [PatchSide::Inner, PatchSide::Outer] {
         // Triangular holes are 0.1 wide, square ones 0.17.
         let result = check(&sieve, &settings(0.6, 0.1, side));
         assert_eq!(result.statistics.capped.len(), 6, "{:?}", result.statistics.capped);
@@ -234,7 +234,7 @@ fn holes_that_the_lattice_cannot_see_are_closed_and_said() {
 
 #[test]
 fn holes_that_it_can_see_stay() {
-    for side in [Side::Inner, Side::Outer] {
+    for side in [PatchSide::Inner, PatchSide::Outer] {
         let result = check(&sieve(), &settings(0.1, 0.012, side));
         assert_eq!(result.statistics.capped, Vec::<[f64; 3]>::new());
         assert_eq!(handles(&result.mesh), 6);
@@ -260,14 +260,14 @@ fn a_folded_patch_is_merged_with_itself() {
         };
         [x, v, z]
     });
-    for side in [Side::Inner, Side::Outer] {
+    for side in [PatchSide::Inner, PatchSide::Outer] {
         check(&strip, &settings(0.4, 0.08, side));
     }
 }
 
 #[test]
 fn what_is_no_oriented_patch_is_refused_with_its_place() {
-    let thin = settings(0.1, 0.03, Side::Inner);
+    let thin = settings(0.1, 0.03, PatchSide::Inner);
     let mut moebius = surface(24, 2, false, |u, v| {
         let (turn, r) = (PI * u, 0.4 * (v - 0.5));
         let around = 1.0 + r * turn.cos();
@@ -287,7 +287,7 @@ fn what_is_no_oriented_patch_is_refused_with_its_place() {
 
     let empty = TriMesh::default();
     assert!(matches!(refused(&empty, &thin), ThickenError::Patch(PatchError::NoTriangles)));
-    let coarse = settings(0.1, 0.05, Side::Inner);
+    let coarse = settings(0.1, 0.05, PatchSide::Inner);
     assert!(matches!(
         refused(&square(2), &coarse),
         ThickenError::Settings(ThickenSettingsError::TooCoarse { .. })
@@ -299,9 +299,10 @@ fn a_thickness_map_is_followed() {
     let patch = square(8);
     let map: Vec<f64> = patch.vertices.iter().map(|v| 0.2 + 0.05 * v[0]).collect();
     let result =
-        check(&patch, &ThickenSettings { thickness_map: Some(map), ..settings(0.2, 0.05, Side::Inner) });
+        check(&patch, &ThickenSettings { thickness_map: Some(map), ..settings(0.2, 0.05, PatchSide::Inner) });
     assert!((signed_volume(&result.mesh) / 0.8 - 1.0).abs() < 0.01);
-    let wrong = ThickenSettings { thickness_map: Some(vec![0.1; 3]), ..settings(0.2, 0.05, Side::Inner) };
+    let wrong =
+        ThickenSettings { thickness_map: Some(vec![0.1; 3]), ..settings(0.2, 0.05, PatchSide::Inner) };
     assert!(matches!(
         refused(&patch, &wrong),
         ThickenError::Settings(ThickenSettingsError::Map { values: 3, .. })
@@ -313,7 +314,7 @@ fn the_same_bytes_for_every_number_of_threads() {
     let wave = surface(12, 12, false, |u, v| [2.0 * u, 2.0 * v, 0.3 * (5.0 * u).sin() * (4.0 * v).cos()]);
     let with = |threads| {
         let run = RunSettings::with_threads(threads).unwrap();
-        thicken(&wave, &settings(0.2, 0.06, Side::Inner), &run).unwrap().mesh
+        thicken(&wave, &settings(0.2, 0.06, PatchSide::Inner), &run).unwrap().mesh
     };
     let one = with(1);
     // The patch, a sheet behind it and a rim.

@@ -8,7 +8,7 @@ mod common;
 use common::random::Random;
 use common::thickened::{audit, check};
 use exocarp::{
-    Length, Precision, RunSettings, Side, ThickenError, ThickenSettings, TriMesh, VoxelSize, thicken,
+    Length, PatchSide, Precision, RunSettings, ThickenError, ThickenSettings, TriMesh, VoxelSize, thicken,
 };
 
 /// A case takes at most about this much: a second of work.
@@ -62,7 +62,7 @@ fn settings(random: &mut Random) -> ThickenSettings {
     let resolution = random.of(&[resolution, resolution.max((2.0 / thickness) as u32 + 5)]);
     ThickenSettings {
         thickness: Length::DiagonalFraction(thickness),
-        side: random.of(&[Side::Inner, Side::Outer]),
+        side: random.of(&[PatchSide::Inner, PatchSide::Outer]),
         voxel: (thickness > 0.05).then_some(VoxelSize::Resolution(resolution)),
         rounds: random.of(&[0, 10, 10]),
         precision: random.of(&[Precision::F32, Precision::F32, Precision::F64]),
@@ -113,7 +113,8 @@ fn a_patch_that_is_small_beside_the_voxels_has_each_edge_twice() {
     }
     let mut solids = 0;
     for diagonals in [30.0, 100.0, 516.0, 1000.0] {
-        for (side, resolution) in [(Side::Outer, 12), (Side::Inner, 12), (Side::Outer, 7), (Side::Inner, 32)]
+        for (side, resolution) in
+            [(PatchSide::Outer, 12), (PatchSide::Inner, 12), (PatchSide::Outer, 7), (PatchSide::Inner, 32)]
         {
             let settings = ThickenSettings {
                 thickness: Length::DiagonalFraction(diagonals),

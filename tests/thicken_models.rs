@@ -7,7 +7,7 @@ use common::models::path;
 use common::thickened::check;
 use exocarp::internals::io::load;
 use exocarp::internals::mesh::Topology;
-use exocarp::{Length, Side, ThickenSettings, TriMesh, VoxelSize, clean};
+use exocarp::{Length, PatchSide, ThickenSettings, TriMesh, VoxelSize, clean};
 use std::collections::BTreeSet;
 
 const PATCHES: [&str; 5] = ["head.off", "patch-01.off", "elephant-with-holes.off", "lion.off", "face.obj"];
@@ -27,7 +27,7 @@ fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-fn check_at(name: &str, patch: &TriMesh, side: Side, edges: f64, resolution: u32) {
+fn check_at(name: &str, patch: &TriMesh, side: PatchSide, edges: f64, resolution: u32) {
     let settings = ThickenSettings {
         thickness: Length::Units(edges * mean_edge(patch)),
         voxel: Some(VoxelSize::Resolution(resolution)),
@@ -48,7 +48,7 @@ mod needs_models {
     #[ignore = "needs the test models (EXOCARP_MODELS)"]
     fn small_patches_become_sound_solids() {
         for name in &PATCHES[..3] {
-            check_at(name, &patch(name), Side::Inner, 2.5, 128);
+            check_at(name, &patch(name), PatchSide::Inner, 2.5, 128);
         }
     }
 }
@@ -62,7 +62,7 @@ mod long {
         fn every_patch_becomes_a_sound_solid_on_both_sides() {
             for name in PATCHES {
                 let patch = patch(name);
-                for side in [Side::Inner, Side::Outer] {
+                for side in [PatchSide::Inner, PatchSide::Outer] {
                     for edges in [2.5, 5.0] {
                         for resolution in [128, 256] {
                             check_at(name, &patch, side, edges, resolution);

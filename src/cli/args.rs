@@ -4,7 +4,7 @@ use super::examples;
 use super::format::{bytes, resolution, threads, voxel};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use exocarp::internals::compare::Method;
-use exocarp::{Length, OpenInput, SectionNormals, Side, ThickenSettings, TileIndex, Tolerance};
+use exocarp::{Length, OpenInput, PatchSide, SectionNormals, ThickenSettings, TileIndex, Tolerance};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -144,8 +144,8 @@ pub(super) struct ThickenArguments {
     #[arg(long, value_name = "FILE", conflicts_with = "thickness")]
     pub thickness_map: Option<PathBuf>,
     /// The side of the patch on which the solid lies: behind it, or where its normals point
-    #[arg(long, value_enum, default_value_t = PatchSide::Inner)]
-    pub side: PatchSide,
+    #[arg(long, value_enum, default_value_t = SideArgument::Inner)]
+    pub side: SideArgument,
     /// Where to write the solid
     #[arg(long, short, value_name = "SOLID")]
     pub output: PathBuf,
@@ -205,26 +205,26 @@ impl OutputArguments {
 
 /// `--side`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum PatchSide {
+pub(super) enum SideArgument {
     /// Behind the patch, opposite to its normals
     Inner,
     /// In front of it
     Outer,
 }
 
-impl PatchSide {
+impl SideArgument {
     /// The name in the statistics file.
     pub fn name(self) -> &'static str {
         match self {
-            PatchSide::Inner => "inner",
-            PatchSide::Outer => "outer",
+            SideArgument::Inner => "inner",
+            SideArgument::Outer => "outer",
         }
     }
 
-    pub fn side(self) -> Side {
+    pub fn side(self) -> PatchSide {
         match self {
-            PatchSide::Inner => Side::Inner,
-            PatchSide::Outer => Side::Outer,
+            SideArgument::Inner => PatchSide::Inner,
+            SideArgument::Outer => PatchSide::Outer,
         }
     }
 }

@@ -41,5 +41,5 @@ mod tests;
 
 pub use error::{Obstacle, PatchError, ThickenError, ThickenSettingsError};
 pub use pipeline::{ThickenResult, thicken};
-pub use settings::{SectionNormals, Side, ThickenSettings};
+pub use settings::{PatchSide, SectionNormals, ThickenSettings};
 pub use statistics::{ShapeCounts, ThickenStatistics, ThickenTimes, TriangleCounts};

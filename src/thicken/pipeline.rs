@@ -7,7 +7,7 @@ use super::patch::holes::{CappedPatch, Holes};
 use super::patch::intersections;
 use super::settings::ModelUnits;
 use super::{
-    PatchError, ShapeCounts, Side, ThickenError, ThickenSettings, ThickenStatistics, ThickenTimes,
+    PatchError, PatchSide, ShapeCounts, ThickenError, ThickenSettings, ThickenStatistics, ThickenTimes,
     TriangleCounts,
 };
 use crate::mesh::{Topology, TriMesh};
@@ -95,8 +95,8 @@ pub fn thicken(
 fn as_written(patch: &TriMesh, settings: &ThickenSettings) -> TriMesh {
     let vertices = patch.vertices.iter().map(|v| v.map(|x| settings.precision.round(x))).collect();
     let triangles = match settings.side {
-        Side::Inner => patch.triangles.clone(),
-        Side::Outer => patch.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect(),
+        PatchSide::Inner => patch.triangles.clone(),
+        PatchSide::Outer => patch.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect(),
     };
     TriMesh { vertices, triangles }
 }

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 /// Side of the patch on which the solid lies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Side {
+pub enum PatchSide {
     /// Behind the patch: opposite to its normals.
     #[default]
     Inner,
@@ -39,7 +39,7 @@ pub struct ThickenSettings {
     /// thickness at its closest point of the patch.
     pub thickness_map: Option<Vec<f64>>,
     /// Side of the patch on which the solid lies.
-    pub side: Side,
+    pub side: PatchSide,
     /// Voxel size, less than r/2 (\[WC13\] Remark 1); `None` for r/4.
     ///
     /// With a resolution N, h = (longest side of the patch's bounding box + 2 r) / N.
@@ -64,7 +64,7 @@ impl Default for ThickenSettings {
         ThickenSettings {
             thickness: Length::DiagonalFraction(0.02),
             thickness_map: None,
-            side: Side::Inner,
+            side: PatchSide::Inner,
             voxel: None,
             max_halvings: 1,
             rounds: DEFAULT_ROUNDS,

@@ -1,7 +1,7 @@
 //! Thickened patches: the same bytes in scalar code as in the machine's vectors, and cancelled in
 //! each phase.
 
-use super::{Side, ThickenError, ThickenSettings, thicken};
+use super::{PatchSide, ThickenError, ThickenSettings, thicken};
 use crate::geom::simd::scalar::in_vectors_and_scalars;
 use crate::mesh::{TriMesh, shapes};
 use crate::quantity::Length;
@@ -25,7 +25,7 @@ fn turned(mut mesh: TriMesh) -> TriMesh {
 #[test]
 fn thickened_patches_are_the_same_in_scalar_code() {
     for (name, patch) in [("wave", shapes::wave(12)), ("turned wave", turned(shapes::wave(12)))] {
-        for side in [Side::Inner, Side::Outer] {
+        for side in [PatchSide::Inner, PatchSide::Outer] {
             let settings = ThickenSettings {
                 thickness: Length::DiagonalFraction(0.03),
                 side,

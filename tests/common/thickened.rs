@@ -2,7 +2,7 @@
 
 use exocarp::internals::mesh::measure::signed_volume;
 use exocarp::verify::soundness;
-use exocarp::{RunSettings, Side, ThickenResult, ThickenSettings, TriMesh, thicken};
+use exocarp::{PatchSide, RunSettings, ThickenResult, ThickenSettings, TriMesh, thicken};
 use std::collections::BTreeSet;
 
 /// Thickens, and checks everything that is promised.
@@ -23,7 +23,7 @@ pub fn audit(patch: &TriMesh, settings: &ThickenSettings, result: &ThickenResult
     let there: BTreeSet<_> = (0..result.mesh.triangles.len()).map(|t| corners(&result.mesh, t)).collect();
     let mut turned = patch.clone();
     turned.vertices.iter_mut().for_each(|v| *v = v.map(|x| settings.precision.round(x)));
-    if settings.side == Side::Outer {
+    if settings.side == PatchSide::Outer {
         turned.triangles.iter_mut().for_each(|t| t.swap(1, 2));
     }
     for t in 0..patch.triangles.len() {
