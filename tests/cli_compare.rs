@@ -132,8 +132,8 @@ fn a_report_is_one_page_with_figures() {
 mod needs_browser {
     use super::*;
 
-    /// What the browser says about each figure: drawn, if every picture in it was decoded and every
-    /// drawing has an extent.
+    /// Verdict of the browser about each figure: drawn, if every picture in it was decoded and
+    /// every drawing has an extent.
     const PROBE: &str = r#"<script>
 addEventListener('load', () => {
   for (const figure of document.querySelectorAll('figure')) {

@@ -250,7 +250,7 @@ impl Drop for Tiny {
     }
 }
 
-/// What to write where there is no room for it: arguments behind those of an offset.
+/// Outputs for a place without room for them: arguments behind those of an offset.
 fn too_large(dir: &Path) -> Vec<Vec<String>> {
     let at = |name: &str| dir.join(name).display().to_string();
     let (mesh, stl, vdb) = (at("o.ply"), at("o.stl"), at("o.vdb"));

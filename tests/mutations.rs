@@ -42,10 +42,11 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// What reading may take beside the file: buffers.
+/// Bytes that reading may take beside the file: buffers.
 const BUFFERS: usize = 1 << 20;
 
-/// What it may take for each byte: OBJ takes about 100 bytes for a line of six.
+/// Bytes that reading may take for each byte of the file: OBJ takes about 100 bytes for a line of
+/// six.
 const PER_BYTE: usize = 64;
 
 /// Changes for each kind of file.
@@ -261,7 +262,7 @@ fn mutated_meshes_are_read_or_refused() {
 
 /// Files of OpenVDB go through the program: a crash of the library would end the test.
 fn mutated_bands_are_refused(directory: &Path) {
-    /// Where a file's hash stands, which tells that it was changed. Without, a file is taken on
+    /// Position of a file's hash, which tells that it was changed. Without, a file is taken on
     /// trust.
     const HASH: std::ops::Range<usize> = 21..57;
     /// A process each: a tenth of them is enough.

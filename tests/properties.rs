@@ -1,5 +1,5 @@
-//! What an offset does not depend on: where the model lies, which way it is turned, its scale, and
-//! the order of its vertices and triangles.
+//! Properties that an offset does not depend on: where the model lies, which way it is turned, its
+//! scale, and the order of its vertices and triangles.
 //!
 //! Each property is as strong as it can be. Scaling by a power of two changes no digit, so the
 //! result has the same digits. Moves that map the lattice to itself change the order of sums and

@@ -13,7 +13,7 @@ const ANAPHORS: [&str; 13] = [
     "This",
 ];
 
-/// Where names of files begin in backticks.
+/// Beginnings of names of files, in backticks.
 const ROOTS: [&str; 8] = ["src/", "tests/", "docs/", "cpp/", "scripts/", "examples/", "benches/", ".ci/"];
 
 #[test]

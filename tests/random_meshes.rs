@@ -12,7 +12,7 @@ use exocarp::{Precision, RunSettings};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// What a run may take: seconds of CPU, and bytes of address space, of which it uses less than
+/// Limits of a run: seconds of CPU, and bytes of address space, of which it uses less than
 /// half.
 const CPU_SECONDS: u32 = 5;
 const ADDRESS_SPACE_KIB: u32 = 1_000_000;

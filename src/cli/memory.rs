@@ -1,4 +1,4 @@
-//! What this process asks of the system: that it takes back memory that is free, and that it does
+//! Requests of this process to the system: that it takes back memory that is free, and that it does
 //! not end a write.
 
 /// Has large blocks of memory returned to the system as soon as they are free, for the run that

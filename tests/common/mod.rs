@@ -9,7 +9,7 @@ pub mod thickened;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// What a run of the program left.
+/// Result of a run of the program.
 #[derive(Debug)]
 pub struct Outcome {
     pub code: i32,

@@ -8,7 +8,7 @@ use std::path::Path;
 
 const SPHERE: Sphere = Sphere { radius: 2.0, voxel: 0.1, half_width: 3.0 };
 
-/// Where a file's identifier says of what kind it is.
+/// Byte of a file's identifier that says of what kind it is.
 const UUID_VERSION: usize = 21 + 14;
 
 fn options() -> VdbOptions {

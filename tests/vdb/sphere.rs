@@ -22,7 +22,7 @@ pub struct Leaves {
     pub ids: Vec<i32>,
 }
 
-/// Where a leaf lies.
+/// Position of a leaf.
 enum Place {
     Band,
     Inside,

@@ -23,8 +23,8 @@ use glam::DVec3;
 /// The tip of a wedge of 22 degrees is 2.5 voxels from where it is a voxel thick.
 pub const MAX_FEATURE_REACH: f64 = 2.5;
 
-/// The distance from the crease at which its faces are sampled at first, in voxels. Later steps take
-/// twice the last movement, but no more than this.
+/// The distance from the crease at which its faces are sampled at first, in voxels. Later steps
+/// take twice the last movement, but no more than this.
 const FIRST_OFFSET: f64 = 0.2;
 
 /// The least distance beside the crease at which its faces are sampled, in voxels, so that rounding

@@ -1,8 +1,9 @@
 //! The creases and corners of the surface: tangent planes that a cell sees, and the point in which
 //! they meet.
 //!
-//! A *smooth face*, or face for short, is a part of the surface between creases. Two faces meet in a
-//! crease, three or more in a corner. Cells have faces, too; in this folder the word is never theirs.
+//! A *smooth face*, or face for short, is a part of the surface between creases. Two faces meet in
+//! a crease, three or more in a corner. Cells have faces, too; in this folder the word is never
+//! theirs.
 
 mod crease_planes;
 mod feature_map;

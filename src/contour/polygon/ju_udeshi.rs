@@ -14,10 +14,10 @@
 //!      b ----- c
 //! ```
 //!
-//! On the side of b the diagonal stays in the envelope when it crosses the triangle (b, v+, v-), the
-//! wall between the tetrahedra (a, b, v+, v-) and (b, c, v+, v-). The triangle abc is then in these
-//! two. The triangle acd is in the envelope when e crosses it: it falls apart into parts in the four
-//! tetrahedra.
+//! On the side of b the diagonal stays in the envelope when it crosses the triangle (b, v+, v-),
+//! the wall between the tetrahedra (a, b, v+, v-) and (b, c, v+, v-). The triangle abc is then in
+//! these two. The triangle acd is in the envelope when e crosses it: it falls apart into parts in
+//! the four tetrahedra.
 //!
 //! Both tests are strict. A diagonal that meets the grid edge itself crosses neither wall and is
 //! given up for a vertex on the edge, which is what \[LW11\] says of such cases.

@@ -1,4 +1,4 @@
-//! What is written is read back.
+//! Round trips: meshes that are written are read back.
 
 use proptest::prelude::*;
 

@@ -1,4 +1,4 @@
-//! What files in the wild have and the standards do not, or only in a corner.
+//! Features of files in the wild that the standards do not have, or only in a corner.
 
 use super::*;
 

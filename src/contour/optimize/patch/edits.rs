@@ -24,8 +24,8 @@ impl Patch {
         true
     }
 
-    /// Splits triangle `n` by a new vertex at the rounded position `at`, if the mesh stays embedded.
-    /// Returns the vertex's number.
+    /// Splits triangle `n` by a new vertex at the rounded position `at`, if the mesh stays
+    /// embedded. Returns the vertex's number.
     pub fn try_split_face(&mut self, n: usize, at: [f64; 3]) -> Option<u32> {
         let t = self.triangles[n];
         let new = self.new_vertex()?;
