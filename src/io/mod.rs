@@ -7,7 +7,7 @@
 //! | STL | binary and ascii, several solids | binary |
 //! | OFF | also `COFF`, `NOFF`, `STOFF`; comments; counts on the first line; without keyword | text |
 //!
-//! [`load`] returns the mesh *as it stands in the file*: vertices and triangles in the file's
+//! [`TriMesh::load`](crate::TriMesh::load) returns the mesh *as it stands in the file*: vertices and triangles in the file's
 //! order, nothing welded, nothing dropped but what is not finite; [`clean`](crate::mesh::clean) is
 //! the next step. Text may have the line ends of any system and a byte order mark. Polygons are
 //! triangulated: quads along the shorter diagonal that leaves two triangles of like orientation,
@@ -21,7 +21,7 @@
 //! a PLY header that begin with no keyword.
 //!
 //! # Promises
-//! - No file makes [`load`] panic, and no header makes it allocate more than the file's size
+//! - No file makes loading panic, and no header makes it allocate more than the file's size
 //!   justifies: the result is a mesh with finite coordinates, vertex numbers in range and at least
 //!   one triangle, or a [`LoadError`] that names file, place, cause and remedy (fuzzed in
 //!   `tests.rs`).
@@ -29,7 +29,7 @@
 //!   goes to a temporary file beside it, which is renamed. A failure leaves the old file and no
 //!   other.
 //! - A mesh that was saved loads again with the same triangles and the same coordinates: those of
-//!   the mesh rounded to f32, or as they are with [`Precision::F64`], which STL has not. So do text
+//!   the mesh rounded to f32, or as they are with [`Precision::F64`](crate::Precision), which STL has not. So do text
 //!   formats: readers of 32 and of 64 bits get the same numbers.
 
 pub(crate) mod atomic;

@@ -83,7 +83,7 @@ impl fmt::Display for CleanReport {
 ///
 /// # Panics
 /// When a triangle names a vertex that the mesh does not have; meshes from
-/// [`load`](crate::io::load) never do.
+/// [`TriMesh::load`] are never so.
 pub fn clean(mesh: TriMesh) -> (TriMesh, CleanReport) {
     let TriMesh { mut vertices, mut triangles } = mesh;
     let mut report =

@@ -19,10 +19,10 @@ const ENTRY: &str = "tile";
 const CODECS: [(Compression, &str); 3] =
     [(Compression::Blosc, "blosc"), (Compression::Zip, "zip"), (Compression::None, "none")];
 
-/// Writes the band of a tile, as [`write()`](super::write()) does.
+/// Writes the band of a tile, as [`Band::save`] does.
 ///
 /// # Errors
-/// Those of [`write()`](super::write()).
+/// Those of [`Band::save`].
 pub fn write_tile(path: &Path, band: &Band, tile: Tile, options: &VdbOptions) -> Result<(), VdbError> {
     let codec = CODECS.iter().find(|(c, _)| *c == options.compression).map_or("none", |(_, name)| name);
     let mut options = options.clone();
