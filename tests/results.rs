@@ -51,7 +51,7 @@ fn what_is_made_for_32_bits_takes_32_bits() {
 }
 
 /// The system's error at the end of the chain of causes.
-fn system_error(error: &dyn Error) -> Option<std::io::ErrorKind> {
+fn system_error(error: &(dyn Error + 'static)) -> Option<std::io::ErrorKind> {
     let mut next = Some(error);
     while let Some(error) = next {
         if let Some(found) = error.downcast_ref::<std::io::Error>() {

@@ -7,9 +7,9 @@
 //! | STL | binary and ascii, several solids | binary |
 //! | OFF | also `COFF`, `NOFF`, `STOFF`; comments; counts on the first line; without keyword | text |
 //!
-//! [`TriMesh::load`](crate::TriMesh::load) returns the mesh *as it stands in the file*: vertices and triangles in the file's
-//! order, nothing welded, nothing dropped but what is not finite; [`clean`](crate::mesh::clean) is
-//! the next step. Text may have the line ends of any system and a byte order mark. Polygons are
+//! [`TriMesh::load`](crate::TriMesh::load) returns the mesh *as it stands in the file*: vertices
+//! and triangles in the file's order, nothing welded, nothing dropped but what is not finite;
+//! [`clean`](crate::clean()) is the next step. Text may have the line ends of any system and a byte order mark. Polygons are
 //! triangulated: quads along the shorter diagonal that leaves two triangles of like orientation,
 //! larger ones by cutting ears, so that concave faces do not fold. Files are streamed: beside the
 //! mesh there is a fixed buffer, except for OBJ, where the parser holds about 100 bytes for each
@@ -29,8 +29,8 @@
 //!   goes to a temporary file beside it, which is renamed. A failure leaves the old file and no
 //!   other.
 //! - A mesh that was saved loads again with the same triangles and the same coordinates: those of
-//!   the mesh rounded to f32, or as they are with [`Precision::F64`](crate::Precision), which STL has not. So do text
-//!   formats: readers of 32 and of 64 bits get the same numbers.
+//!   the mesh rounded to f32, or as they are with [`Precision::F64`](crate::Precision),
+//!   which STL has not. So do text formats: readers of 32 and of 64 bits get the same numbers.
 
 pub(crate) mod atomic;
 pub(crate) mod error;

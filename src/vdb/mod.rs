@@ -13,13 +13,8 @@
 //! OpenVDB's own nine tests. A [`ClosestGrid`] of the same leaves holds the ids of the closest
 //! triangles, where they were asked for.
 //!
-<<<<<<< HEAD
-//! Leaves go in and out in batches, as flat slices; [`write()`] and [`open_surface`] are the files.
-//! The same grids and options give the same bytes.
-=======
-//! Leaves go in and out in batches, as flat slices; [`Band::save`] and [`Band::open`] are the files. The
-//! same grids and options give the same bytes.
->>>>>>> b6dc444 (tests: cancel in each phase, keep precision and causes)
+//! Leaves go in and out in batches, as flat slices; [`Band::save`] and [`Band::open`] are the
+//! files. The same grids and options give the same bytes.
 //!
 //! Truncated files are recognised whoever wrote them. Damaged ones are if they were written here:
 //! their identifier is a hash of the content. Not promised is what happens with another program's
