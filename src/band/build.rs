@@ -347,7 +347,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
                 Some(side) => side * hit.distance_squared.sqrt(),
                 None => distance.from_triangle(p, hit.triangle).distance,
             };
-            let phi = self.settled(signed - r, p);
+            let phi = self.snapped_to_surface(signed - r, p);
             valid += u64::from(phi.abs() <= lattice.voxel);
             leaf.set(node.number_in_leaf(), phi, hit.triangle, background);
         }
@@ -357,7 +357,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
     }
 
     /// Returns `phi` at `p`, or 0 where `phi` is so close to 0 that only rounding gives it a sign.
-    fn settled(&self, phi: f64, p: DVec3) -> f64 {
+    fn snapped_to_surface(&self, phi: f64, p: DVec3) -> f64 {
         let rounding = 4.0 * f64::EPSILON * (p.abs().max_element() + self.settings.r.abs());
         if phi.abs() <= ON_SURFACE * self.settings.lattice.voxel + rounding { 0.0 } else { phi }
     }

@@ -7,7 +7,7 @@ use crate::run::{Cancelled, RunSettings};
 use rayon::prelude::*;
 
 /// Width of the smallest blocks of the octree filter, in nodes, as in the build.
-const SMALLEST: i32 = 2;
+const MIN_BLOCK_WIDTH: i32 = 2;
 
 /// Returns the counts that [`build_filtered`](super::build_filtered) would return.
 ///
@@ -38,7 +38,7 @@ pub fn count_queries(
             return Ok(counts);
         }
         let mut node_queries = 0;
-        filter.octree(block, triangle, SMALLEST, &mut counts, &mut |block, verdict| {
+        filter.octree(block, triangle, MIN_BLOCK_WIDTH, &mut counts, &mut |block, verdict| {
             if matches!(verdict, Verdict::Kept { .. }) {
                 node_queries += nodes(block.width);
             }

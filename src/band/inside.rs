@@ -1,6 +1,6 @@
 //! The blocks of nodes that are inside as a whole: all of the inside beyond the leaves.
 
-use crate::lattice::leaf_index::{BLOCK, block, blocks_of, find, number_in_block};
+use crate::lattice::leaf_index::{BLOCK_DIM, block, blocks_of, find, number_in_block};
 use crate::lattice::{Ijk, LEAF_DIM, LeafMask};
 use rayon::prelude::*;
 
@@ -19,7 +19,7 @@ impl InsideBlocks {
     /// Returns the set of some blocks, given as origin and width in nodes. Widths are powers of
     /// two, and origins multiples of them.
     pub fn new(inside: &[(Ijk, i32)]) -> InsideBlocks {
-        let small = || inside.iter().filter(|b| b.1 <= BLOCK);
+        let small = || inside.iter().filter(|b| b.1 <= BLOCK_DIM);
         let blocks = blocks_of(small().map(|b| b.0));
         let mut masks = vec![[0; 8]; blocks.len()];
         let mut at = 0;
@@ -32,7 +32,7 @@ impl InsideBlocks {
             }
         }
         let mut larger = Vec::new();
-        let mut side = 2 * BLOCK;
+        let mut side = 2 * BLOCK_DIM;
         while inside.iter().any(|b| b.1 >= side) {
             let mut origins: Vec<Ijk> = inside.iter().filter(|b| b.1 == side).map(|b| b.0).collect();
             origins.sort_unstable();

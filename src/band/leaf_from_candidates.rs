@@ -11,7 +11,7 @@ use crate::lattice::{Ijk, LEAF_DIM};
 use glam::DVec3;
 
 /// Coordinate of the centre of a leaf's nodes along each axis, in voxels from the lowest node.
-const CENTRE: f32 = 0.5 * (LEAF_DIM - 1) as f32;
+const LEAF_CENTRE: f32 = 0.5 * (LEAF_DIM - 1) as f32;
 
 /// Number of candidates beyond which a leaf asks the hierarchy for every eight nodes instead.
 ///
@@ -21,7 +21,7 @@ const CENTRE: f32 = 0.5 * (LEAF_DIM - 1) as f32;
 /// leaves, lists take 3.8 s and the hierarchy 0.1 s.
 const MAX_CANDIDATES: usize = 1500;
 
-/// The leaf in the making, and what it is made with.
+/// The leaf in the making, with its working memory.
 struct Work<'a> {
     pruner: &'a mut CandidatePruner,
     lists: &'a mut BlockLists,
@@ -30,8 +30,8 @@ struct Work<'a> {
 }
 
 impl<P: LeafPolicy> Worker<'_, P> {
-    /// Evaluates the leaf at `origin`, whose centre is at the signed distance `distance` with the
-    /// closest triangle `triangle`, and appends it with the lists of its blocks.
+    /// Evaluates the leaf at `origin` and appends it with the lists of its blocks. The leaf's
+    /// centre has the signed distance `distance` and the closest triangle `triangle`.
     pub(super) fn leaf_from_candidates(
         &self,
         origin: Ijk,
@@ -79,9 +79,9 @@ impl<P: LeafPolicy> Worker<'_, P> {
         }
     }
 
-    /// Applies the octree filter to the eight octants of a block whose list has the given depth,
-    /// and goes on with those that it keeps. `side` is the sign of the distance in all of the
-    /// block, where it is one.
+    /// Applies the octree filter to the eight octants of a block, and goes on with the octants that
+    /// it keeps. The block's list has the given depth. `side` is the sign of the distance in the
+    /// block, where it has one sign.
     fn octants(&self, depth: usize, block: Block, side: Option<f64>, work: &mut Work<'_>) {
         let lattice = self.filter.lattice;
         let octants = block.children();
@@ -89,7 +89,7 @@ impl<P: LeafPolicy> Worker<'_, P> {
         let mut centres = [[0.0; 8]; 3];
         for (n, octant) in octants.iter().enumerate() {
             for (centre, node) in centres.iter_mut().zip(octant.origin.0) {
-                centre[n] = (node & (LEAF_DIM - 1)) as f32 + middle - CENTRE;
+                centre[n] = (node & (LEAF_DIM - 1)) as f32 + middle - LEAF_CENTRE;
             }
         }
         work.pruner.measure(depth, &centres, octants[0].width);
@@ -156,8 +156,8 @@ impl<P: LeafPolicy> Worker<'_, P> {
         self.policy.decide(&BlockCandidates { pruner, depth, block, centre, lattice, ssvh, distance })
     }
 
-    /// Evaluates the eight nodes of a block of side 2, which was narrowed to last as octant `n`
-    /// with one of `centres`, and returns how many of them are valid.
+    /// Evaluates the eight nodes of a block of width 2, and returns the number of valid nodes. The
+    /// block was pruned to last, as octant `n` with one of `centres`.
     fn nodes_by_list(
         &self,
         n: usize,

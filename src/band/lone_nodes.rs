@@ -30,10 +30,10 @@ use std::sync::LazyLock;
 /// Length, in voxels, that a tip may reach beyond its node, away from the other node and to the
 /// sides. Tips of boxes end within 0.3 and are found again from the cells beside them. Claws and
 /// the borders of sheets reach farther, and would be lost.
-const LONGEST_TIP: f64 = 0.5;
+const MAX_TIP_LENGTH: f64 = 0.5;
 
 /// Cosine with the way to the other node below which a direction is away from that node.
-const AWAY: f64 = -0.2;
+const MAX_COSINE_AWAY: f64 = -0.2;
 
 /// The 26 neighbours of a node: across a face of its cells first, then across an edge, then across
 /// a corner.
@@ -41,7 +41,7 @@ const AWAY: f64 = -0.2;
 /// The other nodes of a body with a corner as sharp as a box's are among them, at any rotation: the
 /// cone in such a corner is 35 degrees wide to each side, and no direction is farther than 28
 /// degrees from all neighbours.
-static AROUND: LazyLock<[[i32; 3]; 26]> = LazyLock::new(|| {
+static NEIGHBOURS: LazyLock<[[i32; 3]; 26]> = LazyLock::new(|| {
     let mut around: Vec<[i32; 3]> =
         (0..27).map(|n| [n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1]).filter(|d| *d != [0; 3]).collect();
     around.sort_by_key(|d| d.iter().map(|x| x.abs()).sum::<i32>());
@@ -145,12 +145,13 @@ impl Search<'_> {
             let way = towards(delta);
             let goes_on = |other: &[i32; 3]| {
                 let direction = towards(other).normalize();
-                direction.dot(way.normalize()) <= AWAY && is_on_side(node + LONGEST_TIP * voxel * direction)
+                direction.dot(way.normalize()) <= MAX_COSINE_AWAY
+                    && is_on_side(node + MAX_TIP_LENGTH * voxel * direction)
             };
             let is_between = |n: i32| is_on_side(node + f64::from(n) / f64::from(WAY_PARTS) * voxel * way);
-            !AROUND.iter().any(goes_on) && (1..WAY_PARTS).all(is_between)
+            !NEIGHBOURS.iter().any(goes_on) && (1..WAY_PARTS).all(is_between)
         };
-        AROUND.iter().filter(is_other).take(MAX_TRIED).any(reaches)
+        NEIGHBOURS.iter().filter(is_other).take(MAX_TRIED).any(reaches)
     }
 }
 

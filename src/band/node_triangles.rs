@@ -6,7 +6,7 @@ use crate::candidates::CandidateLists;
 use crate::lattice::{Ijk, LEAF_SIZE, LeafMask, bits};
 
 /// The slot of a leaf of the ring.
-const RING: [u32; 2] = [u32::MAX; 2];
+const RING_LEAF: [u32; 2] = [u32::MAX; 2];
 
 /// The triangles near the edges of the band, as far as they are known.
 #[derive(Clone, Debug, Default)]
@@ -91,7 +91,7 @@ impl NodeTriangles {
             .leaves()
             .map(|leaf| {
                 let own = order.next_if(|&n| origins[n as usize] == signs.origin(leaf));
-                own.map_or(RING, |n| numbers_in_parts[n as usize])
+                own.map_or(RING_LEAF, |n| numbers_in_parts[n as usize])
             })
             .collect();
         NodeTriangles { slots, parts }
@@ -153,7 +153,7 @@ mod tests {
         let numbers: Vec<i32> =
             (0..3 * LEAF_SIZE).map(|n| if n / LEAF_SIZE == 1 { -1 } else { number(n) }).collect();
         let part = PartTriangles::new(&numbers);
-        let triangles = NodeTriangles { slots: vec![[0, 2], RING, [0, 0], [0, 1]], parts: vec![part] };
+        let triangles = NodeTriangles { slots: vec![[0, 2], RING_LEAF, [0, 0], [0, 1]], parts: vec![part] };
         assert!(triangles.of_leaf(LeafId(1)).is_none() && triangles.of_leaf(LeafId(4)).is_none());
         for (leaf, number) in [(0, 2), (2, 0), (3, 1)] {
             let expected = &numbers[number * LEAF_SIZE..(number + 1) * LEAF_SIZE];

@@ -1,6 +1,6 @@
 //! The ring of leaves around the leaves of a band, by bit masks of blocks of leaves.
 
-use crate::lattice::leaf_index::{BLOCK, blocks_of, find, number_in_block};
+use crate::lattice::leaf_index::{BLOCK_DIM, blocks_of, find, number_in_block};
 use crate::lattice::{Axis, Ijk, LEAF_DIM, LeafMask, Z_FIRST, Z_LAST, bits};
 use rayon::prelude::*;
 
@@ -40,7 +40,7 @@ fn count(mask: &LeafMask) -> usize {
 /// Returns the set with the leaves before and after each leaf along `axis` added.
 fn widened(set: &LeafSet, axis: Axis) -> LeafSet {
     let mut step = [0; 3];
-    step[axis as usize] = BLOCK;
+    step[axis as usize] = BLOCK_DIM;
     let mut parts: LeafSet = Vec::with_capacity(3 * set.len());
     for &(block, m) in set {
         let (mut before, own, mut after): (_, LeafMask, _) = match axis {

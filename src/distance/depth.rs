@@ -12,11 +12,11 @@ use std::collections::BinaryHeap;
 const MAX_BOXES: usize = 15_000;
 
 /// Number of boxes between two looks at the cancel token.
-const BETWEEN_CHECKS: usize = 256;
+const BOXES_PER_CHECK: usize = 256;
 
 /// Depth, relative to the model's half-extent, below which a solid is as good as flat and the
 /// search ends.
-const NEGLIGIBLE: f64 = 1e-6;
+const NEGLIGIBLE_DEPTH: f64 = 1e-6;
 
 /// Bounds of the radius of the largest ball inside a solid, in model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,13 +44,13 @@ pub fn largest_depth(
     let mut deepest = 0.0f64;
     let mut open = BinaryHeap::new();
     open.push(SearchBox::new(distance, bounds.centre(), half, 0, &mut deepest));
-    let negligible = NEGLIGIBLE * half.max_element();
+    let negligible = NEGLIGIBLE_DEPTH * half.max_element();
     let mut looked_at = 1;
     while let Some(widest) = open.pop() {
         if looked_at >= MAX_BOXES || widest.bound <= deepest * (1.0 + relative) + negligible {
             return Ok(Depth { at_least: deepest, at_most: widest.bound.max(deepest) });
         }
-        if looked_at % BETWEEN_CHECKS < 2 {
+        if looked_at % BOXES_PER_CHECK < 2 {
             run.check()?;
         }
         for child in widest.halved(distance, &mut deepest) {

@@ -1,7 +1,7 @@
 //! Plain bisection: the straightforward way that the hybrid solver replaces (\[LW11\] section V),
 //! kept to measure what the closed forms save (Table V).
 
-use super::hybrid::{End, GridEdge, Root, SHORTEST, Solver};
+use super::hybrid::{End, GridEdge, MIN_INTERVAL, Root, Solver};
 use super::statistics::EdgeStatistics;
 
 /// Halves the edge until a middle has abs(phi) up to `tolerance` voxels. Entry n of
@@ -34,7 +34,7 @@ pub(super) fn solve(
             return solver.finish(edge, middle);
         }
         solver.replace(&mut low, &mut high, middle);
-        if high.t - low.t < SHORTEST {
+        if high.t - low.t < MIN_INTERVAL {
             break;
         }
     }

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 /// Parameter beyond an interval's ends up to which a root still belongs to the interval. Two
 /// neighbouring intervals round the plane between them differently.
-const OVERLAP: f64 = 1e-9;
+const INTERVAL_OVERLAP: f64 = 1e-9;
 
 /// Returns the first parameter in 0..=1 at which the point p1 + t (p2 - p1) is at the offset
 /// distance `r` from `triangle`: outside for r > 0, inside for r < 0 (by the triangle's normal), on
@@ -25,7 +25,7 @@ pub(super) fn root(triangle: &Triangle, p1: DVec3, p2: DVec3, r: f64) -> Option<
 
 fn in_region(triangle: &Triangle, p1: DVec3, p2: DVec3, r: f64, interval: Interval) -> Option<f64> {
     let direction = p2 - p1;
-    let within = |t: &f64| (interval.from - OVERLAP..=interval.to + OVERLAP).contains(t);
+    let within = |t: &f64| (interval.from - INTERVAL_OVERLAP..=interval.to + INTERVAL_OVERLAP).contains(t);
     let root = match interval.feature {
         // Remark 5: the distance from the plane is linear along the segment.
         Feature::Face => {

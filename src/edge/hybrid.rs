@@ -1,6 +1,8 @@
-//! The hybrid solver for one edge (\[LW11\] section V.A): analytic where the closest points of both
-//! ends share a triangle, verified by a query, bisection otherwise, with a new analytic attempt
-//! after each subdivision.
+//! The hybrid solver for one edge (\[LW11\] section V.A).
+//!
+//! Where the closest points of both ends share a triangle, the root on it is taken in closed form
+//! and verified by a query. Otherwise the edge is halved, with a new attempt in closed form after
+//! each subdivision.
 
 use super::shared_triangle::shared_triangle;
 use super::statistics::{COUNTED_SUBDIVISIONS, EdgeStatistics};
@@ -9,15 +11,15 @@ use crate::candidates::Candidates;
 use crate::distance::{Sample, SignedDistance};
 use glam::DVec3;
 
-/// A root is good when abs(phi) is below this many voxels. The promise is 1e-6; corners of the
-/// offset are found by intersecting planes through the roots, which multiplies their errors.
-pub(super) const TOLERANCE: f64 = 1e-7;
+/// Size of phi, in voxels, below which a root is good. The promise is 1e-6; corners of the offset
+/// are found by intersecting planes through the roots, which multiplies their errors.
+pub(super) const ROOT_TOLERANCE: f64 = 1e-7;
 
-/// Bisection ends when the interval is shorter than this part of the edge. By then a continuous phi
-/// is below the tolerance; what is left is a jump, or rounding far from the origin.
-pub(super) const SHORTEST: f64 = 1e-9;
+/// Length of the interval, relative to the edge, below which bisection ends. By then a continuous
+/// phi is below the tolerance; a larger phi is a jump, or rounding far from the origin.
+pub(super) const MIN_INTERVAL: f64 = 1e-9;
 
-/// A grid edge, with what the band knows of its ends.
+/// A grid edge, with the triangles that the band knows at its ends.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct GridEdge<'a> {
     /// World positions of the end that is inside the offset solid and of the one outside.
@@ -25,7 +27,7 @@ pub(super) struct GridEdge<'a> {
     pub(super) outside: DVec3,
     /// A triangle near each end, the closest one if it is known.
     pub(super) triangles: [NodeTriangle; 2],
-    /// The triangles that can be closest to a point of the edge, where they are known.
+    /// Triangles that can be closest to a point of the edge, where they are known.
     pub(super) candidates: Option<Candidates<'a>>,
     /// Direction of the edge along its axis, from the inside to the outside.
     pub(super) direction: Direction,
@@ -106,22 +108,22 @@ impl Solver<'_> {
     /// Returns the intersection of `edge`.
     pub(super) fn solve(&self, edge: &GridEdge, statistics: &mut EdgeStatistics) -> Root {
         statistics.intersected += 1;
-        self.halve(edge, statistics)
+        self.solve_counted(edge, statistics)
     }
 
     /// Returns the intersection of an edge that has been counted.
-    pub(super) fn halve(&self, edge: &GridEdge, statistics: &mut EdgeStatistics) -> Root {
+    pub(super) fn solve_counted(&self, edge: &GridEdge, statistics: &mut EdgeStatistics) -> Root {
         match self.bracket(edge, statistics) {
             Ok(bracket) => {
                 let tried = self.propose(edge, &bracket).map(|p| self.end(edge, p.t, p.triangle, statistics));
-                self.go_on(edge, bracket, tried, statistics)
+                self.refine(edge, bracket, tried, statistics)
             }
             Err(root) => root,
         }
     }
 
-    /// Returns the ends of an edge with their distances; its root at once where there is nothing to
-    /// solve.
+    /// Returns the ends of an edge with their distances, or the root at once where there is nothing
+    /// to solve.
     fn bracket(&self, edge: &GridEdge, statistics: &mut EdgeStatistics) -> Result<Bracket, Root> {
         let [inside, outside] = edge.triangles;
         let low = End { t: 0.0, sample: self.node(edge, edge.inside, inside, statistics) };
@@ -147,9 +149,9 @@ impl Solver<'_> {
         Some(Proposal { t: low.t + s * (high.t - low.t), triangle })
     }
 
-    /// Takes the point that was tried first, if there was one, for the root, or for a tighter
-    /// interval, and goes on from there by halving and trying.
-    fn go_on(
+    /// Refines the bracket by halving and by attempts in closed form until it has the root. `tried`
+    /// is the first attempt, if there was one: the root, or an end of a tighter bracket.
+    fn refine(
         &self,
         edge: &GridEdge,
         Bracket { mut low, mut high }: Bracket,
@@ -180,7 +182,7 @@ impl Solver<'_> {
                 return self.finish(edge, middle);
             }
             self.replace(&mut low, &mut high, middle);
-            if high.t - low.t < SHORTEST {
+            if high.t - low.t < MIN_INTERVAL {
                 return self.collapsed(edge, low, high, statistics);
             }
             let proposal = self.propose(edge, &Bracket { low, high });
@@ -206,7 +208,7 @@ impl Solver<'_> {
         statistics: &mut EdgeStatistics,
     ) -> Root {
         let rounding = 1e-12 * (edge.inside.abs().max_element() + self.r.abs());
-        if self.phi(&high) - self.phi(&low) > 4.0 * SHORTEST * self.voxel + rounding {
+        if self.phi(&high) - self.phi(&low) > 4.0 * MIN_INTERVAL * self.voxel + rounding {
             return self.jump(edge, 0.5 * (low.t + high.t), statistics);
         }
         statistics.bisected += 1;
@@ -220,13 +222,13 @@ impl Solver<'_> {
 
     pub(super) fn finish(&self, edge: &GridEdge, end: End) -> Root {
         // Directions to a closest point nearer than the root's own error mean nothing.
-        let vanishing = 1e3 * TOLERANCE * self.voxel;
+        let vanishing = 1e3 * ROOT_TOLERANCE * self.voxel;
         let normal = self.distance.gradient(self.at(edge, end.t), &end.sample, vanishing);
         Root { t: end.t, normal, triangle: end.sample.triangle }
     }
 
     pub(super) fn is_root(&self, end: &End) -> bool {
-        self.phi(end).abs() <= TOLERANCE * self.voxel
+        self.phi(end).abs() <= ROOT_TOLERANCE * self.voxel
     }
 
     pub(super) fn phi(&self, end: &End) -> f64 {
@@ -243,10 +245,10 @@ impl Solver<'_> {
 
     pub(super) fn end(&self, edge: &GridEdge, t: f64, guess: u32, statistics: &mut EdgeStatistics) -> End {
         statistics.queries += 1;
-        End { t, sample: self.ask(edge, self.at(edge, t), guess) }
+        End { t, sample: self.sample(edge, self.at(edge, t), guess) }
     }
 
-    fn ask(&self, edge: &GridEdge, p: DVec3, guess: u32) -> Sample {
+    fn sample(&self, edge: &GridEdge, p: DVec3, guess: u32) -> Sample {
         match edge.candidates {
             Some(candidates) => {
                 let hit = candidates.closest(self.distance.ssvh(), p);
@@ -267,7 +269,7 @@ impl Solver<'_> {
             NodeTriangle::Known(t) => self.distance.from_triangle(p, t),
             NodeTriangle::Guess(t) => {
                 statistics.queries += 1;
-                self.ask(edge, p, t)
+                self.sample(edge, p, t)
             }
         }
     }

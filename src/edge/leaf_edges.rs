@@ -1,5 +1,5 @@
-//! The intersected edges of one leaf, block by block: edges that start in a block of 2^3 nodes
-//! share its list.
+//! Solves the intersected edges of one leaf, block by block. Edges that start in a block of 2^3
+//! nodes share the block's list.
 
 use super::hybrid::{Direction, GridEdge, NodeTriangle, Root, Solver};
 use super::settings::RootMethod;
@@ -10,12 +10,13 @@ use crate::candidates::CandidateLists;
 use crate::lattice::{Axis, Ijk, Lattice, LeafMask};
 use glam::DVec3;
 
-/// Edges that start at the nodes of a block.
-const IN_BLOCK: usize = 24;
+/// The most edges that start at the nodes of a block of 2^3 nodes.
+const MAX_EDGES_IN_BLOCK: usize = 24;
 
 /// Two bits in each of two rows of a mask's word: the nodes of a block in one of its two words.
 const BLOCK_ROWS: u64 = 0x0303;
 
+/// The solver of the edges of a leaf.
 pub(super) struct LeafSolver<'a> {
     pub(super) solver: Solver<'a>,
     pub(super) method: RootMethod,
@@ -25,13 +26,14 @@ pub(super) struct LeafSolver<'a> {
     pub(super) near: &'a NearTriangles,
 }
 
-/// A leaf, with what its edges need.
+/// A leaf, with the data that its edges need.
 struct Leaf<'a> {
     id: LeafId,
     origin: Ijk,
     inside: &'a LeafMask,
-    /// Closest triangles of its nodes, and of those of the next leaf along each axis.
+    /// Closest triangles of the leaf's nodes.
     own: Option<LeafTriangles<'a>>,
+    /// Closest triangles of the nodes of the next leaf along each axis.
     next: [Option<LeafTriangles<'a>>; 3],
 }
 
@@ -41,7 +43,7 @@ impl LeafSolver<'_> {
         let mut statistics = EdgeStatistics::default();
         let leaf = self.leaf(id);
         if let (RootMethod::TriangleIteration, Some(lists)) = (self.method, &self.near.lists) {
-            self.by_blocks(&leaf, lists, samples, &mut statistics);
+            self.solve_by_blocks(&leaf, lists, samples, &mut statistics);
             return statistics;
         }
         for ((axis, number), sample) in self.numbers.in_leaf(id).zip(samples) {
@@ -58,9 +60,9 @@ impl LeafSolver<'_> {
         statistics
     }
 
-    /// Intersects them eight at a time, those of a block together: they have its list in common, if
-    /// it has one.
-    fn by_blocks(
+    /// Intersects all edges that start in a leaf, eight at a time. Edges of one block are taken
+    /// together: they share the block's list, if it has one.
+    fn solve_by_blocks(
         &self,
         leaf: &Leaf<'_>,
         lists: &CandidateLists,
@@ -72,7 +74,7 @@ impl LeafSolver<'_> {
         let unsolved = Root { t: 0.0, normal: DVec3::ZERO, triangle: 0 };
         let mut together: Vec<GridEdge<'_>> = Vec::with_capacity(8);
         for block in 0..64 {
-            let mut edges = [(Axis::X, 0); IN_BLOCK];
+            let mut edges = [(Axis::X, 0); MAX_EDGES_IN_BLOCK];
             let count = starting_in(block, &masks, &mut edges);
             if count == 0 {
                 continue;
@@ -131,9 +133,13 @@ impl LeafSolver<'_> {
     }
 }
 
-/// Returns the edges of `masks`, one for each axis, that start at nodes of a block: axis and node
-/// number in the leaf. Blocks are numbered x slowest. Returns how many there are.
-fn starting_in(block: usize, masks: &[&LeafMask; 3], edges: &mut [(Axis, usize); IN_BLOCK]) -> usize {
+/// Writes to `edges` the edges of `masks`, one mask for each axis, that start at nodes of a block,
+/// as axis and node number in the leaf. Blocks are numbered x slowest. Returns the number of edges.
+fn starting_in(
+    block: usize,
+    masks: &[&LeafMask; 3],
+    edges: &mut [(Axis, usize); MAX_EDGES_IN_BLOCK],
+) -> usize {
     let [x, y, z] = [block >> 4, block >> 2 & 3, block & 3].map(|n| 2 * n);
     let mut count = 0;
     for (axis, mask) in Axis::ALL.into_iter().zip(masks) {

@@ -1,6 +1,6 @@
 //! Settings of the edge solver: the surface, the lattice and the method.
 
-use super::hybrid::TOLERANCE;
+use super::hybrid::ROOT_TOLERANCE;
 use crate::lattice::{Lattice, Slab};
 
 /// The method that finds the intersection of an edge.
@@ -23,7 +23,7 @@ pub enum RootMethod {
 
 impl RootMethod {
     /// Bisection to the tolerance of the hybrid method.
-    pub const PLAIN_BISECTION: RootMethod = RootMethod::Bisection { tolerance: TOLERANCE };
+    pub const PLAIN_BISECTION: RootMethod = RootMethod::Bisection { tolerance: ROOT_TOLERANCE };
 }
 
 /// The surface to intersect with, the lattice, and the method.

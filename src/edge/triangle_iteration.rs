@@ -9,7 +9,7 @@
 //! takes over.
 
 use super::closed_form;
-use super::hybrid::{End, GridEdge, NodeTriangle, Root, SHORTEST, Solver, TOLERANCE};
+use super::hybrid::{End, GridEdge, MIN_INTERVAL, NodeTriangle, ROOT_TOLERANCE, Root, Solver};
 use super::statistics::EdgeStatistics;
 use crate::candidates::Candidates;
 use glam::DVec3;
@@ -60,7 +60,7 @@ impl Solver<'_> {
         statistics.queries += proposed as u64;
         let ssvh = self.distance.ssvh();
         // The triangle that was solved for is that near, and so is the closest one.
-        let expected = self.r.abs() + TOLERANCE * self.voxel;
+        let expected = self.r.abs() + ROOT_TOLERANCE * self.voxel;
         let hits = (proposed > 0).then(|| match near {
             Some(near) => near.closest8(ssvh, &points, proposed, expected),
             None => ssvh.closest8(&points, guess),
@@ -104,13 +104,13 @@ impl Solver<'_> {
                 return self.finish(edge, end);
             }
             *(if self.phi(&end) < 0.0 { &mut low } else { &mut high }) = end.t;
-            if high - low < SHORTEST {
+            if high - low < MIN_INTERVAL {
                 break;
             }
             let triangle = end.sample.triangle;
             let t = self.root_on(edge, triangle, [low, high]);
             tried = t.map(|t| self.end(edge, t, triangle, statistics));
         }
-        self.halve(edge, statistics)
+        self.solve_counted(edge, statistics)
     }
 }

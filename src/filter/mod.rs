@@ -14,5 +14,5 @@ mod statistics;
 
 pub use block::Block;
 pub use octree::{Filter, Verdict};
-pub use settings::{BoxSide, BoxSideError, FilterSettings, LARGEST_BOX, Switch};
+pub use settings::{BoxSide, BoxSideError, FilterSettings, MAX_BOX_EXPONENT, Switch};
 pub use statistics::FilterStatistics;

@@ -19,12 +19,12 @@ pub enum BoxSide {
     /// About eight boxes along the grid's longest side.
     #[default]
     Automatic,
-    /// 2^n cells along each axis, n from 3 to [`LARGEST_BOX`].
+    /// 2^n cells along each axis, n from 3 to [`MAX_BOX_EXPONENT`].
     PowerOfTwo(u32),
 }
 
 /// The largest exponent of a box side: boxes larger than a grid of 4096 cells hold all of it.
-pub const LARGEST_BOX: u32 = 12;
+pub const MAX_BOX_EXPONENT: u32 = 12;
 
 /// The filters of \[LW11\] section IV, each to be switched off. The band is the same whatever is
 /// on, for closed input; the number of distance computations is not.
@@ -57,7 +57,7 @@ pub struct FilterSettings {
 
 /// A box side out of range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("bounding boxes have 2^3 to 2^{LARGEST_BOX} cells along an axis, not 2^{0}")]
+#[error("bounding boxes have 2^3 to 2^{MAX_BOX_EXPONENT} cells along an axis, not 2^{0}")]
 pub struct BoxSideError(pub u32);
 
 impl FilterSettings {
@@ -67,7 +67,9 @@ impl FilterSettings {
     /// When it is smaller than a leaf, which would be evaluated in parts, or larger than any grid.
     pub fn validate(&self) -> Result<(), BoxSideError> {
         match self.side {
-            BoxSide::PowerOfTwo(n) if !(LEAF_DIM.ilog2()..=LARGEST_BOX).contains(&n) => Err(BoxSideError(n)),
+            BoxSide::PowerOfTwo(n) if !(LEAF_DIM.ilog2()..=MAX_BOX_EXPONENT).contains(&n) => {
+                Err(BoxSideError(n))
+            }
             _ => Ok(()),
         }
     }

@@ -11,13 +11,14 @@ use crate::run::{Cancelled, RunSettings};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Triangles per leaf. Fewer: more nodes to visit; more: more pairs that are compared in vain.
-const LEAF: usize = 8;
+/// Number of triangles in a leaf. Fewer: more nodes to visit; more: more pairs that are compared in
+/// vain.
+const TRIANGLES_PER_LEAF: usize = 8;
 
-/// Children per node.
+/// Number of children of a node.
 const WIDTH: usize = 8;
 
-/// Leaves in a task. Each task looks at the cancel token once.
+/// Number of leaves in a task. Each task looks at the cancel token once.
 const LEAVES_PER_TASK: usize = 256;
 
 /// A closed box in f32, rounded outward.
@@ -103,7 +104,7 @@ impl BoxTree {
         keyed.par_sort_unstable();
         let order: Vec<u32> = keyed.par_iter().map(|&(_, t)| t).collect();
         let boxes: Vec<Box32> = order.par_iter().map(|&t| Box32::around(corners(t))).collect();
-        let mut levels = vec![enclosing(&boxes, LEAF)];
+        let mut levels = vec![enclosing(&boxes, TRIANGLES_PER_LEAF)];
         while levels[levels.len() - 1].len() > 1 {
             levels.push(enclosing(&levels[levels.len() - 1], WIDTH));
         }
@@ -137,7 +138,7 @@ impl BoxTree {
     pub fn grow(&mut self, position: usize, corners: [DVec3; 2]) {
         let more = Box32::around(corners.map(|c| c.to_array()));
         self.boxes[position] = self.boxes[position].with(more);
-        let mut number = position / LEAF;
+        let mut number = position / TRIANGLES_PER_LEAF;
         for level in &mut self.levels {
             level[number] = level[number].with(more);
             number /= WIDTH;
@@ -193,7 +194,7 @@ impl BoxTree {
 
     /// Returns the positions of a leaf's triangles.
     fn leaf(&self, leaf: usize) -> std::ops::Range<usize> {
-        leaf * LEAF..((leaf + 1) * LEAF).min(self.order.len())
+        leaf * TRIANGLES_PER_LEAF..((leaf + 1) * TRIANGLES_PER_LEAF).min(self.order.len())
     }
 
     /// Calls `visit` with each leaf from `first` on whose box meets `query`. `stack` is scratch

@@ -31,12 +31,12 @@ const MAX_SWEEPS: usize = 12;
 
 /// Off-diagonal entries below this fraction of the trace norm count as zero: the rounding of the
 /// entries themselves is of that size, so that going on would only turn noise.
-const NEGLIGIBLE: f64 = 1e-16;
+const NEGLIGIBLE_ENTRY: f64 = 1e-16;
 
 /// The sum of the principal minors, relative to the squared trace, up to which the largest
 /// eigenvalue is at least 17 times the sum of the others. Sixteen powers of it leave nothing of the
 /// others.
-const DOMINATED: f64 = 0.05;
+const MAX_MINORS: f64 = 0.05;
 
 impl Sym3 {
     /// Adds the outer product v v^T.
@@ -86,7 +86,7 @@ impl Sym3 {
         let [yz, zx, xy] = self.off;
         let trace = x + y + z;
         let minors = (x * y - xy * xy) + (y * z - yz * yz) + (z * x - zx * zx);
-        if !((trace * trace).is_normal() && minors <= DOMINATED * trace * trace) {
+        if !((trace * trace).is_normal() && minors <= MAX_MINORS * trace * trace) {
             return None;
         }
         let eighth = self.squared().squared().squared();
@@ -112,7 +112,7 @@ impl Sym3 {
             [product(first, self.times(first)), product(second, to_second), product(third, to_third)];
         let mut off = [product(second, to_third), 0.0, 0.0];
         let mut vectors = [first, second, third];
-        if off[0].abs() > NEGLIGIBLE * trace {
+        if off[0].abs() > NEGLIGIBLE_ENTRY * trace {
             rotate(&mut values, &mut off, &mut vectors, 0);
         }
         if values[1] < values[2] {
@@ -129,7 +129,7 @@ impl Sym3 {
         let mut d = self.diagonal;
         let mut off = self.off;
         let mut vectors = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        let floor = NEGLIGIBLE * (d[0].abs() + d[1].abs() + d[2].abs());
+        let floor = NEGLIGIBLE_ENTRY * (d[0].abs() + d[1].abs() + d[2].abs());
         for _ in 0..MAX_SWEEPS {
             let mut turned = false;
             // Axis a stays, b and c turn.

@@ -38,10 +38,10 @@ pub enum Feature {
     Vertex(TriangleSide),
 }
 
-/// Twice the area relative to the squared longest edge below which a triangle counts as a segment:
-/// its normal would carry fewer than five digits, while its height is below 1e-11 of its length, so
-/// that leaving out the interior moves no distance by more than that.
-const NEEDLE: f64 = 1e-11;
+/// Twice the area, relative to the squared longest edge, below which a triangle counts as a
+/// segment. Its normal would carry fewer than five digits, while its height is below 1e-11 of its
+/// length: leaving out the interior moves no distance by more than that.
+const NEEDLE_RATIO: f64 = 1e-11;
 
 /// A triangle ready for distance evaluation: corners and unit normal (zero for a needle that has
 /// none).
@@ -149,7 +149,7 @@ impl Triangle {
         let cross = (b - a).cross(c - a);
         let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
         let length = cross.length();
-        let normal = if length > NEEDLE * longest { cross / length } else { DVec3::ZERO };
+        let normal = if length > NEEDLE_RATIO * longest { cross / length } else { DVec3::ZERO };
         let flipped = (0..3).filter(|&k| vertices[k] > vertices[(k + 1) % 3]).fold(0, |f, k| f | 1 << k);
         Triangle { corners, normal, flipped }
     }

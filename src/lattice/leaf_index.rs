@@ -4,16 +4,16 @@ use super::{Ijk, LEAF_DIM};
 use rayon::prelude::*;
 
 /// Leaves along one axis of a block. The table of a block takes 2 kB.
-const LEAVES: i32 = 8;
+const LEAVES_PER_AXIS: i32 = 8;
 
 /// Nodes along one axis of a block.
-pub const BLOCK: i32 = LEAVES * LEAF_DIM;
+pub const BLOCK_DIM: i32 = LEAVES_PER_AXIS * LEAF_DIM;
 
 /// The number that stands for no leaf.
 pub const NO_LEAF: u32 = u32::MAX;
 
 /// Numbers of a block's leaves, by [`number_in_block`].
-type Table = [u32; (LEAVES * LEAVES * LEAVES) as usize];
+type Table = [u32; (LEAVES_PER_AXIS * LEAVES_PER_AXIS * LEAVES_PER_AXIS) as usize];
 
 /// The numbers of leaves by origin.
 #[derive(Clone, Debug, Default)]
@@ -30,7 +30,8 @@ impl LeafIndex {
     pub fn new(origins: &[Ijk]) -> LeafIndex {
         assert!(origins.len() < NO_LEAF as usize, "leaves are numbered by 32 bits");
         let blocks = blocks_of(origins.iter().copied());
-        let mut tables = vec![[NO_LEAF; (LEAVES * LEAVES * LEAVES) as usize]; blocks.len()];
+        let mut tables =
+            vec![[NO_LEAF; (LEAVES_PER_AXIS * LEAVES_PER_AXIS * LEAVES_PER_AXIS) as usize]; blocks.len()];
         let mut at = 0;
         for (&origin, n) in origins.iter().zip(0..) {
             tables[find(&blocks, &mut at, origin)][number_in_block(origin)] = n;
@@ -61,7 +62,7 @@ impl LeafIndex {
                 std::array::from_fn(|slot| {
                     let s = slot as i32;
                     let delta = [s / 9 - 1, s / 3 % 3 - 1, s % 3 - 1];
-                    let other = block + Ijk(delta.map(|d| BLOCK * d));
+                    let other = block + Ijk(delta.map(|d| BLOCK_DIM * d));
                     self.blocks.binary_search(&other).map_or(NO_LEAF, |n| n as u32)
                 })
             })
@@ -71,9 +72,10 @@ impl LeafIndex {
             // Along each axis, for each of three leaves: the block that holds it, and the place
             // there.
             let [x, y, z] = origin.0.map(|x| {
-                let leaf = (x & (BLOCK - 1)) / LEAF_DIM;
-                [leaf - 1, leaf, leaf + 1]
-                    .map(|n| ((n.div_euclid(LEAVES) + 1) as usize, (n & (LEAVES - 1)) as usize))
+                let leaf = (x & (BLOCK_DIM - 1)) / LEAF_DIM;
+                [leaf - 1, leaf, leaf + 1].map(|n| {
+                    ((n.div_euclid(LEAVES_PER_AXIS) + 1) as usize, (n & (LEAVES_PER_AXIS - 1)) as usize)
+                })
             });
             let mut numbers = [NO_LEAF; 27];
             for (slot, number) in numbers.iter_mut().enumerate() {
@@ -118,19 +120,19 @@ pub fn find(blocks: &[Ijk], at: &mut usize, node: Ijk) -> usize {
 /// Returns the lowest node of the block that holds `node`.
 #[inline]
 pub fn block(node: Ijk) -> Ijk {
-    Ijk(node.0.map(|x| x & !(BLOCK - 1)))
+    Ijk(node.0.map(|x| x & !(BLOCK_DIM - 1)))
 }
 
 /// Returns the number, in its block, of the leaf that holds `node`. Leaves are numbered in a block
 /// as nodes are in a leaf.
 #[inline]
 pub fn number_in_block(node: Ijk) -> usize {
-    number_of(node.0.map(|x| ((x & (BLOCK - 1)) / LEAF_DIM) as usize))
+    number_of(node.0.map(|x| ((x & (BLOCK_DIM - 1)) / LEAF_DIM) as usize))
 }
 
 #[inline]
 fn number_of([x, y, z]: [usize; 3]) -> usize {
-    let side = LEAVES as usize;
+    let side = LEAVES_PER_AXIS as usize;
     (x * side + y) * side + z
 }
 

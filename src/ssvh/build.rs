@@ -23,14 +23,14 @@ pub struct Ssvh {
     pub(super) extent: f64,
 }
 
-/// Subtrees up to this many triangles get volumes fitted to their corners; larger ones to the
-/// volumes of their children. Larger: slower to build. Smaller: looser volumes where queries spend
-/// their time.
-const FIT_EXACTLY: usize = WIDTH * WIDTH;
+/// The most triangles of a subtree whose volume is fitted to their corners. Volumes of larger
+/// subtrees are fitted to the volumes of their children. Larger: slower to build. Smaller: looser
+/// volumes where queries spend their time.
+const MAX_EXACT_FIT: usize = WIDTH * WIDTH;
 
-/// Subtrees from this many triangles on are built in parallel; a task of fewer takes less time than
-/// handing it over.
-const PARALLEL: usize = 2048;
+/// The fewest triangles of a subtree that is built in parallel. A task of fewer takes less time
+/// than handing it over.
+const MIN_PARALLEL: usize = 2048;
 
 /// A triangle while it is sorted. In 16 bytes, since sorting is moving them: where exactly a
 /// subtree ends matters to nobody.
@@ -154,7 +154,7 @@ impl Builder<'_> {
                 (child_number, child_slot) = next;
             }
             let build = |s: Subtree| (s.number, self.build(s.primitives, s.nodes, s.number, s.slot));
-            let children: Vec<(usize, Vec<Sphere>)> = if triangle_count(&tasks) >= PARALLEL {
+            let children: Vec<(usize, Vec<Sphere>)> = if triangle_count(&tasks) >= MIN_PARALLEL {
                 tasks.into_par_iter().map(build).collect()
             } else {
                 tasks.into_iter().map(build).collect()
@@ -182,7 +182,7 @@ impl Builder<'_> {
 
     /// Returns spheres whose hull encloses all triangles of the subtree with the root `node`.
     fn enclosing(&self, primitives: &[Primitive], node: &Node) -> Vec<Sphere> {
-        if primitives.len() <= FIT_EXACTLY {
+        if primitives.len() <= MAX_EXACT_FIT {
             return primitives.iter().flat_map(|p| self.corners(p.id)).map(|c| (c, 0.0)).collect();
         }
         (0..node.count as usize)
@@ -219,7 +219,7 @@ fn split(primitives: &mut [Primitive], capacity: usize) {
         a.centroid[axis].total_cmp(&b.centroid[axis]).then(a.id.cmp(&b.id))
     });
     let (left, right) = primitives.split_at_mut(middle);
-    if left.len() + right.len() >= PARALLEL {
+    if left.len() + right.len() >= MIN_PARALLEL {
         rayon::join(|| split(left, capacity), || split(right, capacity));
     } else {
         split(left, capacity);

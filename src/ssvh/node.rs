@@ -5,7 +5,7 @@ use crate::geom::swept::{Sphere, Swept};
 use glam::{DVec3, Vec3};
 use pulp::Simd;
 
-/// Children of a node.
+/// The number of children of a node.
 pub(super) const WIDTH: usize = 8;
 
 /// The kind of a node's children.
@@ -17,8 +17,8 @@ pub(super) enum Level {
     Leaf,
 }
 
-/// Eight volumes as structure of arrays, coordinates relative to the hierarchy's centre. Lanes from
-/// `count` on are empty.
+/// Eight volumes as a structure of arrays. Coordinates are relative to the hierarchy's centre.
+/// Lanes from `count` on are empty.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Node {
@@ -85,8 +85,9 @@ impl Node {
         }
     }
 
-    /// Per lane the distance of `q` (relative to the hierarchy's centre) from the volume, negative
-    /// inside, exact but for rounding of a few 2^-24 of the distances involved; infinite if empty.
+    /// Returns the distance of `q`, relative to the hierarchy's centre, from the volume in each
+    /// lane: negative inside, infinite if empty, exact but for rounding of a few 2^-24 of the
+    /// distances involved.
     #[inline(always)]
     pub(super) fn distances<S: Simd>(&self, simd: S, q: Vec3) -> [f32; WIDTH] {
         let q = Vec3F32s::splat(simd, q.to_array());

@@ -24,13 +24,14 @@ impl Hit {
     }
 }
 
-/// Rounding of a bound in units of the distances involved: 64 units in the last place of f32. The
-/// bound takes a few dozen roundings, each of at most half a unit. Too large would only visit more
-/// nodes; too small could lose the closest triangle.
-const SLACK: f64 = 64.0 / 16_777_216.0;
+/// Rounding error of a bound relative to the distances involved: 64 units in the last place of f32.
+/// The bound takes a few dozen roundings, each of at most half a unit. A larger value would only
+/// visit more nodes; a smaller one could lose the closest triangle.
+const BOUND_ROUNDING: f64 = 64.0 / 16_777_216.0;
 
-/// The deepest stack: at most 11 levels of nodes for 2^32 triangles, and 7 siblings wait on each.
-const STACK: usize = 11 * (WIDTH - 1) + 1;
+/// The largest number of entries on the stack: at most 11 levels of nodes for 2^32 triangles, and 7
+/// siblings wait on each.
+const STACK_SIZE: usize = 11 * (WIDTH - 1) + 1;
 
 impl Ssvh {
     /// Returns the closest triangle to `p`. Equal distances go to the lowest triangle number.
@@ -63,7 +64,7 @@ impl Ssvh {
     /// Rounding of a bound for points whose coordinates relative to the centre are at most `sizes`.
     #[inline(always)]
     pub(super) fn slack(&self, sizes: DVec3) -> f64 {
-        SLACK * (sizes.max_element() + self.extent)
+        BOUND_ROUNDING * (sizes.max_element() + self.extent)
     }
 }
 
@@ -244,7 +245,7 @@ impl Around {
 
 /// The nodes that wait for their turn, nearest siblings on top.
 struct Stack {
-    entries: [(f32, u32); STACK],
+    entries: [(f32, u32); STACK_SIZE],
     waiting: usize,
 }
 
@@ -252,7 +253,7 @@ impl Stack {
     /// Returns the stack with the root on it.
     #[inline(always)]
     fn new() -> Self {
-        Stack { entries: [(0.0, 0); STACK], waiting: 1 }
+        Stack { entries: [(0.0, 0); STACK_SIZE], waiting: 1 }
     }
 
     /// Returns the next node whose volume is within `limit`.

@@ -1,4 +1,4 @@
-//! Checks that a hierarchy encloses what it stands for.
+//! Checks that the volumes of a hierarchy enclose the triangles below them.
 
 use super::Ssvh;
 use super::node::Level;
@@ -9,13 +9,13 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("the volume of lane {lane} of node {node} misses triangle {triangle} by {by}")]
 pub struct InvalidSsvh {
-    /// Node number.
+    /// Number of the node.
     pub node: usize,
-    /// Slot in the node.
+    /// Lane of the volume in the node.
     pub lane: usize,
-    /// Mesh triangle number.
+    /// Number of the triangle in the mesh.
     pub triangle: u32,
-    /// The distance in model units.
+    /// Distance of the triangle's corner from the volume, in model units.
     pub by: f64,
 }
 

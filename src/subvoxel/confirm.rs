@@ -42,7 +42,7 @@ pub fn confirm_missed(
     let near = NearMesh::new(&all, lattice);
     let around = LeafIndex::new(&around(&all, lattice, stray));
     let leaves: Vec<_> = leaves.filter(|(origin, _)| around.get(*origin).is_some()).collect();
-    let nearest = run.install(|| near.look(mesh, &leaves, run))?;
+    let nearest = run.install(|| near.nearest_triangles(mesh, &leaves, run))?;
     let missed = all.iter().zip(nearest).filter(|(candidate, nearest)| nearest.is_missed(candidate, lattice));
     Ok(MissedCandidates { all: missed.map(|(candidate, _)| *candidate).collect(), lattice: Some(lattice) })
 }
@@ -102,7 +102,7 @@ impl<'a> NearMesh<'a> {
     }
 
     /// Returns the nearest triangle to each candidate, of the triangles of `leaves`.
-    fn look(
+    fn nearest_triangles(
         &self,
         mesh: &TriMesh,
         leaves: &[(Ijk, Range<usize>)],

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 /// Size of a unit vector's coordinate up to which it counts as zero. This value makes the 26
 /// directions about equally likely.
-const FLAT: f64 = 0.4;
+const ZERO_COORDINATE: f64 = 0.4;
 
 /// A set of directions, a bit for each of 3^3.
 pub(super) type Directions = u32;
@@ -53,7 +53,7 @@ impl DirectionTable {
 }
 
 fn direction(normal: DVec3) -> u8 {
-    let digit = |x: f64| if x > FLAT { 2 } else { u8::from(x >= -FLAT) };
+    let digit = |x: f64| if x > ZERO_COORDINATE { 2 } else { u8::from(x >= -ZERO_COORDINATE) };
     9 * digit(normal.x) + 3 * digit(normal.y) + digit(normal.z)
 }
 

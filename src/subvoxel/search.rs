@@ -65,7 +65,7 @@ const MAX_QUERIES_IN_CELL: usize = 6;
 const MIN_KNOWN: usize = 4;
 
 /// Depth, in voxels, up to which a point does not count: rounding.
-const NEGLIGIBLE: f64 = 1e-3;
+const NEGLIGIBLE_DEPTH: f64 = 1e-3;
 
 /// Finds points between the nodes of `signs` that have the other sign.
 ///
@@ -103,11 +103,11 @@ pub fn find_missed(
     Ok(MissedCandidates { all: all.into_iter().flatten().collect(), lattice: Some(lattice) })
 }
 
-/// Nodes along one axis of a leaf's cells.
-const SIDE: usize = LEAF_DIM as usize + 1;
+/// Number of corners of a leaf's cells along one axis.
+const CORNERS_PER_AXIS: usize = LEAF_DIM as usize + 1;
 
 /// The number of corners of a leaf's cells.
-const NODES: usize = SIDE * SIDE * SIDE;
+const CORNER_COUNT: usize = CORNERS_PER_AXIS * CORNERS_PER_AXIS * CORNERS_PER_AXIS;
 
 struct Search<'a> {
     distance: &'a SignedDistance<'a>,
@@ -146,7 +146,7 @@ impl Search<'_> {
         let (mut last, mut disagrees) = (0, false);
         for number in 0..LEAF_SIZE {
             let [x, y, z] = [number >> 6, number >> 3 & 7, number & 7];
-            let first = (x * SIDE + y) * SIDE + z;
+            let first = (x * CORNERS_PER_AXIS + y) * CORNERS_PER_AXIS + z;
             if sets[first] != last {
                 last = sets[first];
                 disagrees = self.directions.disagree(last);
@@ -161,19 +161,19 @@ impl Search<'_> {
 
     /// Returns the closest triangles of the corners of a leaf's cells, -1 where none is known, and
     /// the directions of these triangles. `around` is the leaf and the next ones, z fastest.
-    fn corners(&self, around: [Option<LeafId>; 8]) -> ([i32; NODES], [Directions; NODES]) {
+    fn corners(&self, around: [Option<LeafId>; 8]) -> ([i32; CORNER_COUNT], [Directions; CORNER_COUNT]) {
         let ids = around.map(|leaf| self.near.nodes.of_leaf(leaf?));
         // All of the leaf itself, and of the next ones the first layers only.
         let all = ids[0].map(|ids| ids.by_node());
         let one = |leaf: usize, number| ids[leaf].and_then(|ids| ids.get(number)).map_or(-1, |id| id as i32);
-        let (mut triangles, mut sets) = ([-1; NODES], [0; NODES]);
-        for (row, triangles) in triangles.chunks_exact_mut(SIDE).enumerate() {
-            let [x, y] = [row / SIDE, row % SIDE];
+        let (mut triangles, mut sets) = ([-1; CORNER_COUNT], [0; CORNER_COUNT]);
+        for (row, triangles) in triangles.chunks_exact_mut(CORNERS_PER_AXIS).enumerate() {
+            let [x, y] = [row / CORNERS_PER_AXIS, row % CORNERS_PER_AXIS];
             let number = (x & 7) << 6 | (y & 7) << 3;
             let leaf = x >> 3 << 2 | y >> 3 << 1;
-            let (first, last) = triangles.split_at_mut(SIDE - 1);
+            let (first, last) = triangles.split_at_mut(CORNERS_PER_AXIS - 1);
             match &all {
-                Some(all) if leaf == 0 => first.copy_from_slice(&all[number..number + SIDE - 1]),
+                Some(all) if leaf == 0 => first.copy_from_slice(&all[number..number + CORNERS_PER_AXIS - 1]),
                 _ => (0..).zip(first).for_each(|(z, triangle)| *triangle = one(leaf, number + z)),
             }
             last[0] = one(leaf | 1, number);
@@ -314,7 +314,7 @@ impl Search<'_> {
 
     fn deep(&self, corner: Corner) -> Option<(DVec3, f64)> {
         let depth = -corner.height / self.lattice.voxel;
-        (depth > NEGLIGIBLE).then_some((corner.p, depth))
+        (depth > NEGLIGIBLE_DEPTH).then_some((corner.p, depth))
     }
 }
 
@@ -322,9 +322,9 @@ impl Search<'_> {
 ///
 /// `sets` holds the directions at nodes. The axes follow one another. The last nodes along an axis
 /// have no cell; what is returned for them means nothing.
-fn around_cells(mut sets: [Directions; NODES]) -> [Directions; NODES] {
-    for step in [1, SIDE, SIDE * SIDE] {
-        for n in 0..NODES - step {
+fn around_cells(mut sets: [Directions; CORNER_COUNT]) -> [Directions; CORNER_COUNT] {
+    for step in [1, CORNERS_PER_AXIS, CORNERS_PER_AXIS * CORNERS_PER_AXIS] {
+        for n in 0..CORNER_COUNT - step {
             sets[n] |= sets[n + step];
         }
     }
@@ -336,7 +336,7 @@ const CORNERS: [usize; 8] = {
     let mut corners = [0; 8];
     let mut n = 0;
     while n < 8 {
-        corners[n] = ((n >> 2) * SIDE + (n >> 1 & 1)) * SIDE + (n & 1);
+        corners[n] = ((n >> 2) * CORNERS_PER_AXIS + (n >> 1 & 1)) * CORNERS_PER_AXIS + (n & 1);
         n += 1;
     }
     corners
