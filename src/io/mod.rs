@@ -9,11 +9,11 @@
 //!
 //! [`TriMesh::load`](crate::TriMesh::load) returns the mesh *as it stands in the file*: vertices
 //! and triangles in the file's order, nothing welded, nothing dropped but what is not finite;
-//! [`clean`](crate::clean()) is the next step. Text may have the line ends of any system and a byte order mark. Polygons are
-//! triangulated: quads along the shorter diagonal that leaves two triangles of like orientation,
-//! larger ones by cutting ears, so that concave faces do not fold. Files are streamed: beside the
-//! mesh there is a fixed buffer, except for OBJ, where the parser holds about 100 bytes for each
-//! vertex and face until the end of the file.
+//! [`clean`](crate::clean()) is the next step. Text may have the line ends of any system and a byte
+//! order mark. Polygons are triangulated: quads along the shorter diagonal that leaves two
+//! triangles of like orientation, larger ones by cutting ears, so that concave faces do not fold.
+//! Files are streamed: beside the mesh there is a fixed buffer, except for OBJ, where the parser
+//! holds about 100 bytes for each vertex and face until the end of the file.
 //!
 //! Where a file is wrong but leaves no doubt of the mesh, it is read, and [`load_with_notes`] says
 //! what was passed over: vertices with a coordinate that is not finite (left out, with the faces
