@@ -25,16 +25,21 @@ pub(crate) enum StoredPart {
 
 impl StoredPart {
     /// Copies the stored part of a batch.
+    #[cfg(feature = "openvdb")]
     fn of(self, batch: &LeafBatch) -> Option<LeafBatch> {
         match self {
             StoredPart::Nothing => None,
-            #[cfg(feature = "openvdb")]
             StoredPart::LevelSet => Some(batch.level_set()),
-            #[cfg(feature = "openvdb")]
             StoredPart::WithClosest => {
                 Some(LeafBatch { closest: batch.closest.clone(), ..batch.level_set() })
             }
         }
+    }
+
+    /// Copies nothing.
+    #[cfg(not(feature = "openvdb"))]
+    fn of(self, _: &LeafBatch) -> Option<LeafBatch> {
+        None
     }
 }
 

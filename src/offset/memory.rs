@@ -73,6 +73,7 @@ const BYTES_PER_FEATURE: f64 = 150.0;
 const BYTES_PER_STORED_CELL: [f64; 2] = [30.0, 25.0];
 
 /// Bytes per cell of the closest triangles in OpenVDB.
+#[cfg(feature = "openvdb")]
 const BYTES_PER_CLOSEST_CELL: f64 = 60.0;
 
 /// Peak memory per leaf of a slab's band, in bytes: of its cells, with the level set in OpenVDB,
