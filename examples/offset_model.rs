@@ -4,7 +4,7 @@
 use exocarp::{Length, OffsetSettings, RunSettings, VoxelSize, offset, shapes};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let model = shapes::carved_cube(shapes::DEFAULT_DETAIL);
+    let model = shapes::carved_cube(16);
     let run = RunSettings::with_threads(0)?;
     std::fs::create_dir_all("out")?;
     println!("model: volume {:.4}", model.signed_volume());

@@ -23,7 +23,7 @@ impl Progress for Printer {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let model = shapes::flower(64);
+    let model = shapes::carved_cube(48);
     let cancel = CancelToken::default();
     let run = RunSettings::with_threads(0)?.with_cancel(cancel.clone()).with_progress(Arc::new(Printer));
 

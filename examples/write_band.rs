@@ -6,7 +6,7 @@ use exocarp::{Length, OffsetSettings, RunSettings, VoxelSize, offset_band, shape
 use std::path::Path;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let model = shapes::anchor(shapes::DEFAULT_DETAIL);
+    let model = shapes::carved_cube(16);
     let settings = OffsetSettings {
         distance: Length::Units(0.05),
         voxel: VoxelSize::Units(0.02),

@@ -85,7 +85,7 @@ impl CancelToken {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// `Err(Cancelled)` once cancelled, for use with `?`.
+    /// Returns `Err(Cancelled)` once cancelled, for use with `?`.
     pub fn check(&self) -> Result<(), Cancelled> {
         if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     }
@@ -155,17 +155,17 @@ impl RunSettings {
         self
     }
 
-    /// The number of worker threads.
+    /// Returns the number of worker threads.
     pub fn threads(&self) -> usize {
         self.pool.as_ref().map_or_else(rayon::current_num_threads, |pool| pool.current_num_threads())
     }
 
-    /// The token that stops this run.
+    /// Returns the token that stops this run.
     pub fn cancel_token(&self) -> &CancelToken {
         &self.cancel
     }
 
-    /// `Err(Cancelled)` once the run's token was cancelled.
+    /// Returns `Err(Cancelled)` once the run's token was cancelled.
     pub fn check(&self) -> Result<(), Cancelled> {
         self.cancel.check()
     }
@@ -207,8 +207,8 @@ pub struct PhaseGuard<'a> {
 }
 
 impl PhaseGuard<'_> {
-    /// `steps` more steps are finished. Returns `Err(Cancelled)` when the run shall stop, so that
-    /// every report of progress is also a point of cancellation.
+    /// Reports that `steps` more steps are finished. Returns `Err(Cancelled)` when the run shall
+    /// stop, so that every report of progress is also a point of cancellation.
     pub fn advance(&self, steps: u64) -> Result<(), Cancelled> {
         let done = self.done.fetch_add(steps, Ordering::Relaxed) + steps;
         if let Some(progress) = &self.run.progress {

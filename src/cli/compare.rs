@@ -28,7 +28,7 @@ pub(super) fn run(arguments: &CompareArguments, session: &Session) -> Result<(),
 
     let (loaded, _) = load_mesh(&arguments.input, session)?;
     // What is lost of this is in the table, which is not lost unnoticed.
-    let mut watch = |event: Event| drop(tell(&event, session));
+    let mut watch = |event: Event| drop(print_summary(&event, session));
     let comparison =
         compare(&loaded.mesh, &settings(arguments), &programs(arguments)?, &session.run, &mut watch)?;
     for note in &comparison.notes {
@@ -39,15 +39,15 @@ pub(super) fn run(arguments: &CompareArguments, session: &Session) -> Result<(),
     }
     if let Some(path) = &page {
         if session.verbosity == Verbosity::Verbose {
-            drop(session.tell("drawing the report"));
+            drop(session.print_result("drawing the report"));
         }
         let title = arguments.input.file_name().unwrap_or_default().to_string_lossy();
         save_text(path, &report::page(&comparison, &loaded.mesh, &title, &session.run)?, session)?;
     }
     session.staging.commit()?;
-    session.tell(&text(&comparison))?;
+    session.print_result(&text(&comparison))?;
     if let Some(path) = &page {
-        session.tell(&format!("{}: the table, charts and pictures", path.display()))?;
+        session.print_result(&format!("{}: the table, charts and pictures", path.display()))?;
     }
     check(&comparison)
 }
@@ -80,16 +80,16 @@ fn programs(arguments: &CompareArguments) -> Result<Programs, Failure> {
     Ok(Programs { worker, python: arguments.python.clone() })
 }
 
-fn tell(event: &Event, session: &Session) -> Result<(), Failure> {
+fn print_summary(event: &Event, session: &Session) -> Result<(), Failure> {
     match event {
         Event::Lost(method, lost) => {
             session.warn(&format!("{}: {lost}", method.title()));
             Ok(())
         }
         _ if session.verbosity < Verbosity::Verbose => Ok(()),
-        Event::Begin(run, method) => session.tell(&format!("run {run}: {}", method.title())),
-        Event::Measured(m) => session.tell(&format!("  {:.2} s", m.engine)),
-        Event::Judging(method) => session.tell(&format!("judging {}", method.title())),
+        Event::Begin(run, method) => session.print_result(&format!("run {run}: {}", method.title())),
+        Event::Measured(m) => session.print_result(&format!("  {:.2} s", m.engine)),
+        Event::Judging(method) => session.print_result(&format!("judging {}", method.title())),
     }
 }
 

@@ -57,16 +57,16 @@ impl Failure {
     /// Says on stderr what happened, unless the interrupt handler has said it already.
     pub fn report(self) -> ExitCode {
         if self.exit == Exit::Interrupted {
-            say_interrupted();
+            log_interrupted();
         } else {
-            say("error", &self.sentence);
+            log_line("error", &self.sentence);
         }
         self.exit.into()
     }
 }
 
 /// One line on stderr.
-pub(super) fn say(kind: &str, sentence: &str) {
+pub(super) fn log_line(kind: &str, sentence: &str) {
     use std::io::Write;
     // Nobody is left to be told when stderr is closed.
     let _ = writeln!(std::io::stderr(), "exocarp: {kind}: {}", sentence.replace('\n', " "));
@@ -74,10 +74,10 @@ pub(super) fn say(kind: &str, sentence: &str) {
 
 /// Says that the run was interrupted, once: the interrupted command and the signal handler may both
 /// get here.
-pub(super) fn say_interrupted() {
+pub(super) fn log_interrupted() {
     static SAID: AtomicBool = AtomicBool::new(false);
     if !SAID.swap(true, Ordering::SeqCst) {
-        say("error", "interrupted; no file was written");
+        log_line("error", "interrupted; no file was written");
     }
 }
 

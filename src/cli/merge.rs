@@ -30,7 +30,7 @@ pub(super) fn run(arguments: &MergeArguments, session: &Session) -> Result<(), F
         merge().map_err(|error| of_output(error, &staged, output).into())
     })?;
     session.staging.commit()?;
-    session.tell(&format!(
+    session.print_result(&format!(
         "{}: {what} of {}, {:.2} s",
         output.display(),
         counted(tiles.len(), "tile", "tiles"),

@@ -45,7 +45,7 @@ pub fn main() -> ExitCode {
         let place = panic.location().map(|l| format!(" at {l}")).unwrap_or_default();
         let text = panic.payload().downcast_ref::<String>().map(String::as_str);
         let text = text.or_else(|| panic.payload().downcast_ref::<&str>().copied()).unwrap_or("no message");
-        exit::say(
+        exit::log_line(
             "error",
             &format!("internal error{place}: {text}; this is a bug in exocarp, please report it"),
         );

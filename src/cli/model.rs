@@ -21,7 +21,7 @@ pub(super) fn run(arguments: &ModelArguments, session: &Session) -> Result<(), F
     let mesh = (shape.make)(arguments.detail);
     session.phase(Phase::Write, || save_mesh(&mesh, output, precision(arguments.f64), session))?;
     session.staging.commit()?;
-    session.tell(&format!(
+    session.print_result(&format!(
         "{}: {}, {}",
         output.display(),
         counted(mesh.triangles.len(), "triangle", "triangles"),

@@ -64,7 +64,7 @@ pub(super) fn run(arguments: &OffsetArguments, session: &Session) -> Result<(), 
         save_json(path, &file, session)?;
     }
     session.staging.commit()?;
-    tell(arguments, &result, &phases, session)
+    print_summary(arguments, &result, &phases, session)
 }
 
 fn settings(arguments: &OffsetArguments, session: &Session) -> Result<OffsetSettings, Failure> {
@@ -174,7 +174,7 @@ impl Settings {
     }
 }
 
-fn tell(
+fn print_summary(
     arguments: &OffsetArguments,
     result: &Made,
     phases: &Phases<EngineTimes>,
@@ -197,9 +197,9 @@ fn tell(
     let mut files = arguments.output.iter().chain(arguments.more.files());
     let first = files.next().map(|path| path.display().to_string()).unwrap_or_default();
     let more: String = files.map(|path| format!("; {}", path.display())).collect();
-    session.tell(&format!("{first}: {what}, {:.2} s{more}", session.wall()))?;
+    session.print_result(&format!("{first}: {what}, {:.2} s{more}", session.wall()))?;
     match session.verbosity {
-        Verbosity::Verbose => session.tell(&summary(result, phases)),
+        Verbosity::Verbose => session.print_result(&summary(result, phases)),
         _ => Ok(()),
     }
 }

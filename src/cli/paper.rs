@@ -21,7 +21,7 @@ pub(super) fn run(arguments: &PaperArguments, session: &Session) -> Result<(), F
     let mut reports = Vec::with_capacity(tables.len());
     for table in tables {
         let report = measure(table, &settings, &session.run)?;
-        session.tell(&(report.text() + "\n"))?;
+        session.print_result(&(report.text() + "\n"))?;
         reports.push(report);
     }
     if let Some(path) = &arguments.json {

@@ -1,7 +1,7 @@
 //! State that all commands share: verbosity, threads, the interrupt, the time.
 
 use super::args::Common;
-use super::exit::{Exit, Failure, of_io, say, say_interrupted};
+use super::exit::{Exit, Failure, log_interrupted, log_line, of_io};
 use super::outputs::Staging;
 use super::progress::Bar;
 use exocarp::{CancelToken, Phase, RunSettings};
@@ -69,12 +69,12 @@ impl Session {
     /// A warning on stderr.
     pub fn warn(&self, sentence: &str) {
         if self.verbosity > Verbosity::Quiet {
-            self.above_bar(|| say("warning", sentence));
+            self.above_bar(|| log_line("warning", sentence));
         }
     }
 
     /// A result on stdout. Fails when it does not get there, as [`print`] does.
-    pub fn tell(&self, text: &str) -> Result<(), Failure> {
+    pub fn print_result(&self, text: &str) -> Result<(), Failure> {
         if self.verbosity == Verbosity::Quiet {
             return Ok(());
         }
@@ -134,10 +134,10 @@ fn handle_interrupt(cancel: CancelToken, staging: Staging) {
             // The bar may still be there: to the line's beginning, and clear it.
             let _ = write!(std::io::stderr(), "\r\x1b[2K");
         }
-        say_interrupted();
+        log_interrupted();
         std::process::exit(i32::from(Exit::Interrupted as u8));
     };
     if let Err(error) = ctrlc::set_handler(handler) {
-        say("warning", &format!("Ctrl-C will leave temporary files behind: {error}"));
+        log_line("warning", &format!("Ctrl-C will leave temporary files behind: {error}"));
     }
 }

@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &ThickenArguments, session: &Session) -> Result<(),
         save_json(path, &RunFile::new("thicken", input, stated, &phases, statistics, session), session)?;
     }
     session.staging.commit()?;
-    tell(arguments, &result, &phases, session)
+    print_summary(arguments, &result, &phases, session)
 }
 
 /// Writes the solid as a level set: the signed distance from its boundary.
@@ -130,14 +130,14 @@ impl Settings {
     }
 }
 
-fn tell(
+fn print_summary(
     arguments: &ThickenArguments,
     result: &ThickenResult,
     phases: &Phases<ThickenTimes>,
     session: &Session,
 ) -> Result<(), Failure> {
     let more: String = arguments.more.files().map(|path| format!("; {}", path.display())).collect();
-    session.tell(&format!(
+    session.print_result(&format!(
         "{}: {}, {}, {:.2} s{more}",
         arguments.output.display(),
         counted(result.mesh.triangles.len(), "triangle", "triangles"),
@@ -164,7 +164,7 @@ fn tell(
         text += &count("triangles kept", s.triangles.kept);
         text += &count("triangles split", s.triangles.split);
         text += &count("triangles new", s.triangles.new);
-        session.tell(&text)?;
+        session.print_result(&text)?;
     }
     Ok(())
 }

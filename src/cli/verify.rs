@@ -27,7 +27,7 @@ pub(super) fn run(arguments: &VerifyArguments, session: &Session) -> Result<(), 
         save(path, arguments, &report, session)?;
     }
     session.staging.commit()?;
-    session.tell(&table(&report, session.wall()))?;
+    session.print_result(&table(&report, session.wall()))?;
     if report.is_kept() {
         return Ok(());
     }
