@@ -229,7 +229,7 @@ fn an_interrupt_stops_within_200_ms_and_leaves_no_file() {
     let output = dir.path().join("out.ply").display().to_string();
     // Some seconds of work, in all profiles.
     let arguments = ["offset", &input, "-d", "5%", "--resolution", "900", "--threads", "2", "-o", &output];
-    let mut child = command(&arguments).spawn().unwrap();
+    let child = command(&arguments).spawn().unwrap();
     // Not before it works: a busy machine takes its time to start it.
     let before = loop {
         let (state, ticks) = state_and_ticks(child.id());
