@@ -30,7 +30,7 @@ pub const MAX_BOX_EXPONENT: u32 = 12;
 /// on, for closed input; the number of distance computations is not.
 ///
 /// ```
-/// use exocarp::filter::{BoxSide, FilterSettings, Switch};
+/// use exocarp::internals::filter::{BoxSide, FilterSettings, Switch};
 ///
 /// // "BB + OT" of Table IV, with boxes of 128 cells.
 /// let settings = FilterSettings {
