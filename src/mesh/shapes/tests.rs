@@ -1,4 +1,5 @@
 use super::*;
+use crate::mesh::TriMesh;
 use crate::mesh::measure::signed_volume;
 use std::collections::BTreeMap;
 
