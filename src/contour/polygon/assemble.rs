@@ -1,7 +1,7 @@
 //! The mesh of all polygons: each is split into triangles, and these are collected by leaf.
 
 use super::edge_polygon::{EdgePolygon, for_polygons, on_axis};
-use super::triangulate::{EDGE_VERTEX, Fit, Split, triangulate_polygon};
+use super::triangulate::{Fit, Split, triangulate_polygon};
 use crate::band::LeafId;
 use crate::contour::error::{ContourError, TooManyVertices};
 use crate::contour::feature::SurfaceProbe;
@@ -76,8 +76,8 @@ pub fn triangulate(
         .collect::<Result<_, Cancelled>>()?;
 
     let edge_vertices: usize = outputs.iter().map(|o| o.edge_vertices.len()).sum();
-    // The number that stands for an edge vertex must stay free.
-    if (vertices.len() + edge_vertices) as u64 >= u64::from(EDGE_VERTEX) {
+    // The largest number stands for no vertex elsewhere.
+    if (vertices.len() + edge_vertices) as u64 >= u64::from(u32::MAX) {
         return Err(TooManyVertices.into());
     }
     let shared = vertices.len() as u32;
@@ -163,7 +163,9 @@ fn in_leaf(
                 return;
             }
             triangles.clear();
-            let split = triangulate_polygon(polygon, &envelope, &fit, test, &mut triangles);
+            // The leaf's edge vertices are numbered on from the cell and face vertices for now.
+            let next = (vertices.len() + output.edge_vertices.len()) as u32;
+            let split = triangulate_polygon(polygon, &envelope, &fit, test, next, &mut triangles);
             let edge_vertex =
                 || lattice.between_walls(node, on_axis(along.0, lattice.clamp_to_edge(along.1)));
             if let Some(surface) = cells.context.surface
@@ -182,13 +184,6 @@ fn in_leaf(
                 }));
             }
             if split == Split::Fan {
-                // The leaf's edge vertices are numbered on from the cell and face vertices for now.
-                let vertex = (vertices.len() + output.edge_vertices.len()) as u32;
-                for corner in triangles.as_flattened_mut() {
-                    if *corner == EDGE_VERTEX {
-                        *corner = vertex;
-                    }
-                }
                 output.edge_vertices.push(edge_vertex());
             }
             slots.extend(&triangles, number + AXIS_STRIDE * along.0 as u16);

@@ -89,7 +89,8 @@ fn split_all(
 ) -> u64 {
     let mut split = 0;
     for (polygon, envelope, fit) in polygons {
-        split += u64::from(triangulate_polygon(polygon, envelope, fit, test, triangles) == Split::Fan);
+        split +=
+            u64::from(triangulate_polygon(polygon, envelope, fit, test, u32::MAX, triangles) == Split::Fan);
     }
     split
 }

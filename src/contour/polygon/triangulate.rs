@@ -143,24 +143,25 @@ fn length2(diagonal: [[f64; 3]; 2]) -> f64 {
 pub enum Split {
     /// Along diagonals only.
     Diagonals,
-    /// Wholly or in part as a fan around a vertex on the grid edge, [`EDGE_VERTEX`] in the
-    /// triangles.
+    /// Wholly or in part as a fan around a vertex on the grid edge.
     Fan,
 }
 
-/// Stands for the number of the vertex on the grid edge.
-pub const EDGE_VERTEX: u32 = u32::MAX;
-
 /// Splits a polygon into triangles that stay in the envelope, and appends these to `triangles`.
+///
+/// `edge_vertex` is the number of the vertex on the grid edge, if one is needed.
 pub fn triangulate_polygon(
     polygon: &Polygon,
     envelope: &Envelope,
     fit: &Fit<'_>,
     test: DiagonalTest,
+    edge_vertex: u32,
     triangles: &mut Vec<[u32; 3]>,
 ) -> Split {
     let diagonal = match test {
-        DiagonalTest::ConvexConcave if polygon.len > 4 => return ears(polygon, envelope, fit, triangles),
+        DiagonalTest::ConvexConcave if polygon.len > 4 => {
+            return ears(polygon, envelope, fit, edge_vertex, triangles);
+        }
         DiagonalTest::ConvexConcave => quad(polygon, fit, is_good(envelope)),
         DiagonalTest::PolygonEdges if polygon.len > 4 => None,
         DiagonalTest::PolygonEdges => quad(polygon, fit, |quad| ju_udeshi::is_legal(quad, envelope)),
@@ -170,7 +171,7 @@ pub fn triangulate_polygon(
             triangles.extend(pair);
             Split::Diagonals
         }
-        None => fan(polygon, triangles),
+        None => fan(polygon, edge_vertex, triangles),
     }
 }
 
@@ -182,7 +183,13 @@ fn is_good(envelope: &Envelope) -> impl Fn([[f64; 3]; 4]) -> bool {
 
 /// Splits a polygon with face vertices: good ears first, the rest as a quad or around the edge's
 /// vertex.
-fn ears(polygon: &Polygon, envelope: &Envelope, fit: &Fit<'_>, triangles: &mut Vec<[u32; 3]>) -> Split {
+fn ears(
+    polygon: &Polygon,
+    envelope: &Envelope,
+    fit: &Fit<'_>,
+    edge_vertex: u32,
+    triangles: &mut Vec<[u32; 3]>,
+) -> Split {
     let first = triangles.len();
     let mut rest = *polygon;
     while rest.len > 4 {
@@ -200,10 +207,10 @@ fn ears(polygon: &Polygon, envelope: &Envelope, fit: &Fit<'_>, triangles: &mut V
     let n = rest.len;
     let turns = |i: usize| envelope.turns(rest.corners[i].position, rest.corners[(i + 1) % n].position);
     if (0..n).all(turns) {
-        return fan(&rest, triangles);
+        return fan(&rest, edge_vertex, triangles);
     }
     triangles.truncate(first);
-    fan(polygon, triangles)
+    fan(polygon, edge_vertex, triangles)
 }
 
 /// Returns the two triangles of the better legal diagonal of a quad; `None` without a legal one.
@@ -235,10 +242,10 @@ fn best_ear(polygon: &Polygon, envelope: &Envelope, fit: &Fit) -> Option<usize> 
 }
 
 /// Splits a polygon into a fan around the vertex on the grid edge.
-fn fan(polygon: &Polygon, triangles: &mut Vec<[u32; 3]>) -> Split {
+fn fan(polygon: &Polygon, edge_vertex: u32, triangles: &mut Vec<[u32; 3]>) -> Split {
     let corners = polygon.corners();
     for (i, corner) in corners.iter().enumerate() {
-        triangles.push([corner.vertex, corners[(i + 1) % corners.len()].vertex, EDGE_VERTEX]);
+        triangles.push([corner.vertex, corners[(i + 1) % corners.len()].vertex, edge_vertex]);
     }
     Split::Fan
 }
@@ -246,6 +253,8 @@ fn fan(polygon: &Polygon, triangles: &mut Vec<[u32; 3]>) -> Split {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const EDGE_VERTEX: u32 = 99;
 
     const ENVELOPE: Envelope = Envelope { above: [0.0, 0.0, 1.0], below: [0.0; 3] };
 
@@ -257,7 +266,14 @@ mod tests {
         let mut triangles = Vec::new();
         let fit = Fit::new(DVec3::new(0.0, 0.0, 0.5), normal.into(), &CreasePlanes::NONE, 1.0);
         (
-            triangulate_polygon(&polygon, &ENVELOPE, &fit, DiagonalTest::ConvexConcave, &mut triangles),
+            triangulate_polygon(
+                &polygon,
+                &ENVELOPE,
+                &fit,
+                DiagonalTest::ConvexConcave,
+                EDGE_VERTEX,
+                &mut triangles,
+            ),
             triangles,
         )
     }
