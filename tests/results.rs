@@ -66,10 +66,9 @@ fn system_error(error: &(dyn Error + 'static)) -> Option<std::io::ErrorKind> {
 fn the_errors_of_the_system_are_reached_by_source() {
     let dir = tempfile::tempdir().unwrap();
     let (missing, nowhere) = (dir.path().join("none.ply"), dir.path().join("none/a.ply"));
-    let cube = shapes::by_name("cube").unwrap();
     let errors: [exocarp::Error; 4] = [
         TriMesh::load(&missing).unwrap_err().into(),
-        (cube.make)(2).save(&nowhere).unwrap_err().into(),
+        shapes::sphere(2).save(&nowhere).unwrap_err().into(),
         exocarp::vdb::Band::open(&missing).unwrap_err().into(),
         io::merge_tiles(std::slice::from_ref(&missing), &nowhere).unwrap_err().into(),
     ];
