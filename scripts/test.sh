@@ -5,7 +5,7 @@
 #
 # A test that needs more than the toolchain is #[ignore]d, with the reason, in a module that is named
 # after its need:
-#   needs_models    the test models, in the directory EXOCARP_MODELS
+#   needs_models    the test models, in the directory EXOCARP_MODELS (or ../shared/models)
 #   needs_python    python3 with OpenVDB's module
 #   needs_browser   Chromium
 #   long            minutes, with EXOCARP_HEAVY=1
@@ -31,12 +31,18 @@ has_browser() {
     return 1
 }
 
+# A checkout of the test models may lie beside this one.
+if [ -z "${EXOCARP_MODELS:-}" ] && [ -d ../shared/models ]; then
+    EXOCARP_MODELS=$(realpath ../shared/models)
+    export EXOCARP_MODELS
+fi
+
 unmet=() reasons=()
 leave_out() {
     unmet+=("$1::")
     reasons+=("$2")
 }
-[ -d "${EXOCARP_MODELS:-}" ] || leave_out needs_models "EXOCARP_MODELS names no directory"
+[ -d "${EXOCARP_MODELS:-}" ] || leave_out needs_models "EXOCARP_MODELS names no directory, and there is no ../shared/models"
 has_python || leave_out needs_python "no python3 with pyopenvdb or openvdb"
 has_browser || leave_out needs_browser "no Chromium"
 [ "${EXOCARP_HEAVY:-}" = 1 ] || leave_out long "takes minutes: EXOCARP_HEAVY=1, or make test-full"

@@ -212,6 +212,30 @@ fn the_order_of_vertices_and_triangles_does_not_matter() {
     }
 }
 
+/// The number of connected parts larger than a voxel. Smaller ones come and go with the lattice, at
+/// tips that are thinner than it is wide.
+fn parts(mesh: &TriMesh) -> usize {
+    let mut part: Vec<usize> = (0..mesh.vertices.len()).collect();
+    fn root(part: &mut [usize], mut v: usize) -> usize {
+        while part[v] != v {
+            part[v] = part[part[v]];
+            v = part[v];
+        }
+        v
+    }
+    for t in &mesh.triangles {
+        let roots = t.map(|v| root(&mut part, v as usize));
+        part[roots[0]] = roots[2];
+        part[roots[1]] = roots[2];
+    }
+    let mut volumes: HashMap<usize, f64> = HashMap::new();
+    for t in &mesh.triangles {
+        let [a, b, c] = t.map(|v| DVec3::from(mesh.vertices[v as usize]));
+        *volumes.entry(root(&mut part, t[0] as usize)).or_default() += a.dot(b.cross(c)) / 6.0;
+    }
+    volumes.values().filter(|v| v.abs() > VOXEL.powi(3)).count()
+}
+
 #[test]
 fn any_rigid_motion_keeps_the_solid() {
     let mut random = Random(7);
@@ -224,11 +248,7 @@ fn any_rigid_motion_keeps_the_solid() {
                 let (rotation, by) = (DQuat::from_scaled_axis(3.0 * unit()), 5.0 * unit());
                 let moved = made(&mapped(&mesh, |p| rotation * p + by), &settings(distance));
                 let what = format!("{name} {distance} {rotation} {by}");
-                assert_eq!(
-                    Topology::new(&moved).components(),
-                    Topology::new(&expected).components(),
-                    "{what}"
-                );
+                assert_eq!(parts(&moved), parts(&expected), "{what}");
                 assert_near(signed_volume(&moved), signed_volume(&expected), 2e-4, &what);
                 assert_near(area(&moved), area(&expected), 3e-3, &what);
             }
