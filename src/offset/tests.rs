@@ -198,7 +198,8 @@ fn zero_distance_keeps_a_box_sharp() {
     let distance = SignedDistance::new(&mesh, &topology);
     let errors = result.mesh.vertices.iter().map(|&v| distance.at(v.into(), 0).distance.abs() / 0.1);
     let errors: Vec<f64> = errors.collect();
-    // A dozen vertices at the margin of their cells cut an edge of the box, by 0.009 voxels at most.
+    // A dozen vertices at the margin of their cells cut an edge of the box, by 0.009 voxels at
+    // most.
     let beside = errors.iter().filter(|&&e| e > 1e-6).count();
     assert!(1000 * beside < 5 * errors.len(), "{beside} of {}", errors.len());
     let largest = errors.iter().copied().fold(0.0, f64::max);

@@ -1,4 +1,5 @@
-//! The boundary of an open mesh: its loops, and the walls that stand on it.
+//! The boundary of an open mesh: its loops, and the walls that stand on it
+//! (\[WC13\] section 4.1).
 
 use crate::distance::Sample;
 use crate::geom::triangle::{Feature, TriangleSide};

@@ -1,4 +1,4 @@
-//! The contour without its inset, and its joining to the patch (\[WC13\] sections 4.1 and 4.2).
+//! The contour without its inset, and its joining to the patch (\[WC13\] section 4.2).
 
 mod boundary_curve;
 pub(super) mod join;
