@@ -231,10 +231,9 @@ pub use thicken::{
     ThickenSettingsError, thicken,
 };
 
-/// Fails to compile when a type loses `Send` or `Sync`.
-const fn assert_send_sync<T: Send + Sync>() {}
-
-const _: () = {
+// Fails to compile when a type loses `Send` or `Sync`.
+const _: fn() = || {
+    fn assert_send_sync<T: Send + Sync>() {}
     assert_send_sync::<TriMesh>();
     assert_send_sync::<OffsetSettings>();
     assert_send_sync::<OffsetResult>();

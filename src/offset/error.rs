@@ -1,6 +1,5 @@
 //! Why an offset cannot be made, told before the work starts where that is possible.
 
-use super::memory::MemoryError;
 use super::settings::{OpenInput, SettingsError};
 use crate::band::BandSettings;
 use crate::contour::ContourError;
@@ -8,7 +7,7 @@ use crate::distance::{SignedDistance, largest_depth};
 use crate::edge::TooManyEdges;
 use crate::mesh::{MeshError, Topology, TriMesh};
 use crate::quantity::Precision;
-use crate::run::{Cancelled, RunSettings};
+use crate::run::{Bytes, Cancelled, RunSettings};
 #[cfg(feature = "openvdb")]
 use crate::vdb::VdbError;
 
@@ -85,6 +84,24 @@ impl From<VdbError> for OffsetError {
             other => OffsetError::Vdb(other),
         }
     }
+}
+
+/// The work would not fit into memory.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "voxel size {voxel} needs about {} of memory, and {} are allowed; the smallest voxel size that fits is \
+     about {smallest_voxel:.3e}",
+    Bytes(*.needed), Bytes(*.allowed)
+)]
+pub struct MemoryError {
+    /// The voxel size asked for, in model units.
+    pub voxel: f64,
+    /// The estimate, in bytes.
+    pub needed: u64,
+    /// The limit, in bytes.
+    pub allowed: u64,
+    /// The smallest voxel size that would fit, in model units.
+    pub smallest_voxel: f64,
 }
 
 /// The input is not the boundary of a solid.

@@ -1,6 +1,6 @@
 //! Memory of an offset, estimated before the band is made.
 
-use super::error::OffsetError;
+use super::error::{MemoryError, OffsetError};
 use crate::band::narrow_band::StoredPart;
 use crate::band::{BandSettings, count_layers};
 use crate::distance::SignedDistance;
@@ -8,27 +8,9 @@ use crate::edge::TooManyEdges;
 use crate::geom::aabb::Aabb;
 use crate::lattice::Lattice;
 use crate::mesh::{TriMesh, measure};
-use crate::run::{Bytes, Cancelled, RunSettings};
+use crate::run::{Cancelled, RunSettings};
 use crate::system::available_memory;
 use glam::DVec3;
-
-/// The work would not fit into memory.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "voxel size {voxel} needs about {} of memory, and {} are allowed; the smallest voxel size that fits is \
-     about {smallest_voxel:.3e}",
-    Bytes(*.needed), Bytes(*.allowed)
-)]
-pub struct MemoryError {
-    /// The voxel size asked for, in model units.
-    pub voxel: f64,
-    /// The estimate, in bytes.
-    pub needed: u64,
-    /// The limit, in bytes.
-    pub allowed: u64,
-    /// The smallest voxel size that would fit, in model units.
-    pub smallest_voxel: f64,
-}
 
 impl MemoryError {
     /// Not even the thinnest slabs fit.

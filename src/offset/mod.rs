@@ -14,6 +14,7 @@ mod job;
 mod memory;
 mod partition;
 mod pipeline;
+mod prepared;
 mod result;
 mod settings;
 mod stages;
@@ -29,9 +30,8 @@ mod surface;
 mod tests;
 mod voxel_refinement;
 
-pub use error::{EmptyResult, InputError, OffsetError};
+pub use error::{EmptyResult, InputError, MemoryError, OffsetError};
 pub use job::job;
-pub use memory::MemoryError;
 pub use pipeline::offset;
 #[cfg(feature = "openvdb")]
 pub use pipeline::offset_band;

@@ -1,21 +1,23 @@
-//! The operations: check the input, build its hierarchy, run the stages.
+//! The operations: prepare the input, run the stages.
 
+use super::prepared::Prepared;
 use super::stages::run_stages;
 use super::stored_band::{Band, StoredBand};
 use super::voxel_refinement::refine_until_resolved;
 #[cfg(feature = "openvdb")]
 use super::{BandOptions, BandResult};
 use super::{EmptyResult, EngineTimes, OffsetError, OffsetResult, OffsetSettings};
-use super::{OffsetStatistics, error, memory};
+use super::{OffsetStatistics, memory};
 use crate::band::BandSettings;
 #[cfg(feature = "openvdb")]
 use crate::band::narrow_band;
 use crate::band::narrow_band::StoredPart;
 use crate::contour::SlabContour;
 use crate::distance::SignedDistance;
-use crate::mesh::{Topology, TriMesh};
-use crate::run::{Phase, RunSettings};
+use crate::mesh::TriMesh;
+use crate::run::RunSettings;
 use crate::subvoxel::MissedFeatures;
+#[cfg(feature = "openvdb")]
 use std::time::Instant;
 
 /// Makes the offset surface of `mesh`: all points at the signed distance `settings.distance` from
@@ -88,41 +90,6 @@ pub fn offset_band(
         statistics.set_memory(Some(&band));
         Ok(BandResult { band, statistics })
     })
-}
-
-/// The input, ready for work on a lattice.
-#[derive(Clone, Copy)]
-pub(super) struct Prepared<'a> {
-    pub distance: &'a SignedDistance<'a>,
-    pub settings: &'a OffsetSettings,
-    /// The lattice that was asked for.
-    pub band_settings: BandSettings,
-    /// The time spent so far.
-    pub times: EngineTimes,
-    pub run: &'a RunSettings,
-}
-
-impl Prepared<'_> {
-    /// Checks the input, builds its hierarchy, and hands both to `work`.
-    pub fn with<T>(
-        mesh: &TriMesh,
-        settings: &OffsetSettings,
-        run: &RunSettings,
-        work: impl FnOnce(&Prepared<'_>) -> Result<T, OffsetError>,
-    ) -> Result<T, OffsetError> {
-        error::check_mesh(mesh)?;
-        let topology = run.install(|| Topology::new(mesh));
-        error::check_input(mesh, &topology, settings.open_input)?;
-        let band_settings = settings.in_model_units(mesh)?;
-        let started = Instant::now();
-        let distance = {
-            let _phase = run.phase(Phase::Hierarchy, 0);
-            run.install(|| SignedDistance::new(mesh, &topology))
-        };
-        run.check()?;
-        let times = EngineTimes { hierarchy: started.elapsed().as_secs_f64(), ..EngineTimes::default() };
-        work(&Prepared { distance: &distance, settings, band_settings, times, run })
-    }
 }
 
 /// The mesh of an offset surface, and its band where it is kept.

@@ -1,9 +1,10 @@
 //! An offset slab by slab: in less memory than the whole takes, or one share of it on a machine of
 //! its own.
 
-use super::memory::{MemoryError, check_countable, leaves_within};
+use super::error::MemoryError;
+use super::memory::{check_countable, leaves_within};
 use super::partition;
-use super::pipeline::Prepared;
+use super::prepared::Prepared;
 use super::stages::run_stages;
 use super::stored_band::StoredBand;
 use super::voxel_refinement::refine_until_resolved;

@@ -1,6 +1,6 @@
 //! Finer lattices until nothing is unseen.
 
-use super::pipeline::Prepared;
+use super::prepared::Prepared;
 use super::{EmptyResult, EngineTimes, OffsetError, OffsetStatistics};
 use crate::band::BandSettings;
 use crate::lattice::Lattice;
