@@ -210,14 +210,14 @@ fn nudged(x: f64, units: i8) -> f64 {
 }
 
 /// Pairs whose corners are near to, but mostly not on, the planes and sides that they would be on.
-/// No coordinate is near 0: products of units in its last place would underflow, and predicates are
-/// exact only where they do not.
+/// No coordinate is near 0 (those of the grid are -4 to 4): products of units in its last place
+/// would underflow, and predicates are exact only where they do not.
 fn nearly_degenerate_pairs() -> impl Strategy<Value = Pair> {
     let nudges = || prop::array::uniform3(prop::array::uniform3(-1..=1i8));
     (pairs_on_a_grid(), nudges(), nudges(), 0.1..1.0f64).prop_map(|(pair, na, nb, scale)| {
         let moved = |p: Corners, n: [[i8; 3]; 3]| -> Corners {
             std::array::from_fn(|k| {
-                std::array::from_fn(|axis| nudged(scale * (p[k][axis] + 3.0), n[k][axis]))
+                std::array::from_fn(|axis| nudged(scale * (p[k][axis] + 5.0), n[k][axis]))
             })
         };
         let (pa, mut pb) = (moved(pair.pa, na), moved(pair.pb, nb));
