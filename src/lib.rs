@@ -216,6 +216,7 @@ mod error;
 pub mod internals;
 
 pub use error::Error;
+pub use lattice::LatticeError;
 pub use mesh::{CleanReport, MeshChunk, MeshError, TriMesh, clean, shapes};
 #[cfg(feature = "openvdb")]
 pub use offset::{BandOptions, BandResult, offset_band};

@@ -5,7 +5,8 @@ use exocarp::internals::io::load;
 use exocarp::io::{SaveOptions, save};
 use exocarp::verify::soundness;
 use exocarp::{
-    Length, OffsetError, OffsetSettings, Precision, RunSettings, TriMesh, VoxelSize, clean, offset, shapes,
+    LatticeError, Length, OffsetError, OffsetSettings, Precision, RunSettings, TriMesh, VoxelSize, clean,
+    offset, shapes,
 };
 use glam::{DQuat, DVec3};
 
@@ -86,7 +87,7 @@ fn far_from_the_origin_coordinates_of_32_bits_are_refused_and_those_of_64_bits_a
         for fraction in [0.02, -0.01] {
             let what = format!("{name} {fraction}");
             match offset(&model, &settings(fraction, Precision::F32), &run()) {
-                Err(OffsetError::CoarseCoordinates { .. }) => {}
+                Err(OffsetError::Lattice(LatticeError::CoarseCoordinates { .. })) => {}
                 other => panic!("{what}: {other:?}"),
             }
             let result = offset(&model, &settings(fraction, Precision::F64), &run()).expect(&what);
@@ -113,7 +114,7 @@ fn between_the_two_whatever_is_written_is_sound() {
                 assert_sound(&again, result.mesh.vertices.len(), &format!("{name} {step}"));
                 sound += 1;
             }
-            Err(OffsetError::CoarseCoordinates { .. }) => refused += 1,
+            Err(OffsetError::Lattice(LatticeError::CoarseCoordinates { .. })) => refused += 1,
             Err(error) => panic!("{step}: {error}"),
         }
     }

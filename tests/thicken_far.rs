@@ -8,7 +8,8 @@ mod common;
 use common::random::Random;
 use common::thickened::{audit, check};
 use exocarp::{
-    Length, PatchSide, Precision, RunSettings, ThickenError, ThickenSettings, TriMesh, VoxelSize, thicken,
+    LatticeError, Length, PatchSide, Precision, RunSettings, ThickenError, ThickenSettings, TriMesh,
+    VoxelSize, thicken,
 };
 
 /// A case takes at most about this much: a second of work.
@@ -93,7 +94,7 @@ fn random_patches_of_any_thickness_are_sound_or_refused() {
                 | ThickenError::Patch(_)
                 | ThickenError::Obstacle { .. }
                 | ThickenError::Memory(_)
-                | ThickenError::CoarseCoordinates { .. },
+                | ThickenError::Lattice(LatticeError::CoarseCoordinates { .. }),
             ) => refused += 1,
             Err(error) => panic!("seed {seed}, {settings:?}: {error}"),
         }

@@ -183,8 +183,7 @@ fn of_offset(error: &OffsetError) -> Exit {
         OffsetError::Settings(_) => Exit::Usage,
         OffsetError::Input(_) => Exit::Input,
         OffsetError::Empty(_) => Exit::Empty,
-        OffsetError::Memory(_) | OffsetError::TooManyEdges(_) => Exit::Limit,
-        OffsetError::TooManyVertices | OffsetError::CoarseCoordinates { .. } => Exit::Limit,
+        OffsetError::Memory(_) | OffsetError::Lattice(_) => Exit::Limit,
         OffsetError::Vdb(error) => of_vdb(error),
         _ => Exit::Internal,
     }
@@ -195,10 +194,7 @@ fn of_thicken(error: &ThickenError) -> Exit {
         ThickenError::Cancelled => Exit::Interrupted,
         ThickenError::Settings(_) => Exit::Usage,
         ThickenError::Patch(_) => Exit::Input,
-        ThickenError::Obstacle { .. } | ThickenError::Memory(_) | ThickenError::TooManyEdges(_) => {
-            Exit::Limit
-        }
-        ThickenError::TooManyVertices | ThickenError::CoarseCoordinates { .. } => Exit::Limit,
+        ThickenError::Obstacle { .. } | ThickenError::Memory(_) | ThickenError::Lattice(_) => Exit::Limit,
         ThickenError::Offset(error) => of_offset(error),
         _ => Exit::Internal,
     }

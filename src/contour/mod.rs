@@ -53,7 +53,7 @@ mod optimize;
 mod slab;
 
 pub use crate::quantity::Precision;
-pub use error::{ContourError, TooManyVertices};
+pub use error::ContourError;
 pub use implicit_surface::{Creases, ImplicitSurface, SurfaceSample};
 pub use optimize::MAX_TRIANGLE_REACH;
 pub use polygon::{DiagonalTestTimes, time_diagonal_tests};

@@ -3,8 +3,7 @@
 //! They are rounded *before* anything is decided on them. Rounding afterwards would void every
 //! decision.
 
-use super::error::ContourError;
-use crate::lattice::{Ijk, Lattice};
+use crate::lattice::{Ijk, Lattice, LatticeError};
 use crate::quantity::Precision;
 use glam::DVec3;
 
@@ -35,7 +34,7 @@ impl RoundedLattice {
     ///
     /// # Errors
     /// When the coordinates there are too coarse for the voxel size.
-    pub fn new(lattice: Lattice, precision: Precision, extent: u32) -> Result<RoundedLattice, ContourError> {
+    pub fn new(lattice: Lattice, precision: Precision, extent: u32) -> Result<RoundedLattice, LatticeError> {
         let far = lattice.voxel * f64::from(extent);
         // Two units in the last place: node planes and vertices are off by up to half a unit each.
         // Half a unit in all is the limit below which lattices fail.
@@ -44,7 +43,7 @@ impl RoundedLattice {
         if least <= MAX_MARGIN && lattice.voxel > 0.0 {
             Ok(RoundedLattice { lattice, precision, margin: MARGIN.max(least) })
         } else {
-            Err(ContourError::TooFarFromOrigin { far, voxel: lattice.voxel, precision })
+            Err(LatticeError::CoarseCoordinates { far, voxel: lattice.voxel, precision })
         }
     }
 

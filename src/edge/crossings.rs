@@ -5,7 +5,7 @@
 //! leaf, axis, node.
 
 use crate::band::{LeafId, SignField};
-use crate::lattice::{Axis, LeafMask, bits};
+use crate::lattice::{Axis, LatticeError, LeafMask, bits};
 use crate::run::SHARE;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
@@ -38,17 +38,12 @@ struct LeafEdges {
 /// The mask of a leaf without edges.
 const NO_EDGES: &LeafMask = &[0; 8];
 
-/// More than 2^32 - 1 grid edges change sign.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the offset surface crosses more than 4294967295 grid edges; choose a larger voxel size")]
-pub struct TooManyEdges;
-
 impl EdgeNumbers {
     /// Numbers the sign changes of `signs`.
     ///
     /// # Errors
     /// When there are more than 2^32 - 1 of them.
-    pub fn new(signs: &SignField) -> Result<Self, TooManyEdges> {
+    pub fn new(signs: &SignField) -> Result<Self, LatticeError> {
         let ids: Vec<LeafId> = signs.leaves().collect();
         let masks = ids.into_par_iter().with_min_len(16).with_max_len(SHARE);
         let masks = masks.map(|leaf| Axis::ALL.map(|axis| signs.crossed_edges(leaf, axis)));
@@ -59,14 +54,14 @@ impl EdgeNumbers {
     ///
     /// # Errors
     /// When there are more than 2^32 - 1 of them.
-    pub fn of_some(masks: Vec<[LeafMask; 3]>) -> Result<Self, TooManyEdges> {
+    pub fn of_some(masks: Vec<[LeafMask; 3]>) -> Result<Self, LatticeError> {
         Self::of_masks(masks.into_par_iter().with_min_len(64), true)
     }
 
     fn of_masks(
         masks: impl IndexedParallelIterator<Item = [LeafMask; 3]>,
         is_partial: bool,
-    ) -> Result<Self, TooManyEdges> {
+    ) -> Result<Self, LatticeError> {
         let count = masks.len();
         let of_leaf = |(leaf, masks): (usize, [LeafMask; 3])| {
             let mut before = [[0; 8]; 3];
@@ -88,11 +83,11 @@ impl EdgeNumbers {
             // For the leaves before that have none, too.
             leaf_ranks.resize(leaf.leaf.0 as usize + 1, rank as u32);
             let next = edges + u64::from(leaf.first);
-            leaf.first = u32::try_from(edges).map_err(|_| TooManyEdges)?;
+            leaf.first = u32::try_from(edges).map_err(|_| LatticeError::TooManyEdges)?;
             edges = next;
         }
         leaf_ranks.resize(count + 1, leaves.len() as u32);
-        let count = u32::try_from(edges).map_err(|_| TooManyEdges)?;
+        let count = u32::try_from(edges).map_err(|_| LatticeError::TooManyEdges)?;
         Ok(EdgeNumbers { leaf_ranks, leaves, count, is_partial })
     }
 

@@ -20,7 +20,7 @@ mod closed_form;
 mod triangle_regions;
 mod bisection;
 
-pub use crossings::{Crossing, Crossings, EdgeId, EdgeNumbers, TooManyEdges};
+pub use crossings::{Crossing, Crossings, EdgeId, EdgeNumbers};
 pub use settings::{EdgeSettings, RootMethod};
 pub use solve::{solve, solve_by};
 pub use statistics::EdgeStatistics;

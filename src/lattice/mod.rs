@@ -11,6 +11,7 @@
 //! ```
 
 mod axis;
+mod error;
 mod ijk;
 mod world;
 mod facing_layer;
@@ -19,6 +20,7 @@ mod leaf_mask;
 mod slab;
 
 pub use axis::Axis;
+pub use error::LatticeError;
 pub use facing_layer::facing_layer;
 pub use ijk::{Ijk, LEAF_DIM, LEAF_SIZE};
 pub use leaf_index::LeafIndex;

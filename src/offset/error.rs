@@ -4,9 +4,8 @@ use super::settings::{OpenInput, SettingsError};
 use crate::band::BandSettings;
 use crate::contour::ContourError;
 use crate::distance::{SignedDistance, largest_depth};
-use crate::edge::TooManyEdges;
+use crate::lattice::LatticeError;
 use crate::mesh::{MeshError, Topology, TriMesh};
-use crate::quantity::Precision;
 use crate::run::{Bytes, Cancelled, RunSettings};
 #[cfg(feature = "openvdb")]
 use crate::vdb::VdbError;
@@ -27,25 +26,9 @@ pub enum OffsetError {
     /// The work would not fit into memory.
     #[error(transparent)]
     Memory(#[from] MemoryError),
-    /// The surface crosses more lattice edges than 32-bit numbers can count.
+    /// The lattice is too fine for the indices or the precision.
     #[error(transparent)]
-    TooManyEdges(#[from] TooManyEdges),
-    /// The result has more vertices than 32-bit numbers can count.
-    #[error("the result has more than 4294967295 vertices; choose a larger voxel size")]
-    TooManyVertices,
-    /// The coordinates of the chosen precision are too coarse for the voxel size.
-    #[error(
-        "coordinates of size {far} are too coarse in {precision:?} for voxels of size {voxel}; \
-         choose 64-bit coordinates, larger voxels, or move the model to the origin"
-    )]
-    CoarseCoordinates {
-        /// The largest coordinate, in model units.
-        far: f64,
-        /// The voxel size, in model units.
-        voxel: f64,
-        /// The precision that was asked for.
-        precision: Precision,
-    },
+    Lattice(#[from] LatticeError),
     /// OpenVDB could not hold the band.
     #[cfg(feature = "openvdb")]
     #[error(transparent)]
@@ -68,10 +51,7 @@ impl From<ContourError> for OffsetError {
     fn from(error: ContourError) -> Self {
         match error {
             ContourError::Cancelled(cancelled) => cancelled.into(),
-            ContourError::TooManyVertices(_) => OffsetError::TooManyVertices,
-            ContourError::TooFarFromOrigin { far, voxel, precision } => {
-                OffsetError::CoarseCoordinates { far, voxel, precision }
-            }
+            ContourError::Lattice(error) => error.into(),
         }
     }
 }

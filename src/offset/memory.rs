@@ -4,9 +4,8 @@ use super::error::{MemoryError, OffsetError};
 use crate::band::narrow_band::StoredPart;
 use crate::band::{BandSettings, count_layers};
 use crate::distance::SignedDistance;
-use crate::edge::TooManyEdges;
 use crate::geom::aabb::Aabb;
-use crate::lattice::Lattice;
+use crate::lattice::{Lattice, LatticeError};
 use crate::mesh::{TriMesh, measure};
 use crate::run::{Cancelled, RunSettings};
 use crate::system::available_memory;
@@ -149,12 +148,12 @@ fn count_cells(
 
 /// Refuses what would have more vertices than can be numbered, in slabs or not, before leaves are
 /// counted for a long time.
-pub(super) fn check_countable(mesh: &TriMesh, settings: &BandSettings) -> Result<(), TooManyEdges> {
+pub(super) fn check_countable(mesh: &TriMesh, settings: &BandSettings) -> Result<(), LatticeError> {
     // The area is estimated too high where the surface folds; what gets past is found when edges
     // are numbered.
     const LEEWAY: f64 = 4.0;
     let cells = offset_area(mesh, settings.r) / settings.lattice.voxel.powi(2);
-    if cells > LEEWAY * f64::from(u32::MAX) { Err(TooManyEdges) } else { Ok(()) }
+    if cells > LEEWAY * f64::from(u32::MAX) { Err(LatticeError::TooManyEdges) } else { Ok(()) }
 }
 
 /// An estimate of the offset surface's area. A ball with the mesh's area A grows to A + 2 sqrt(4 pi

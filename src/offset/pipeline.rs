@@ -30,8 +30,7 @@ use std::time::Instant;
 ///   ([`OpenInput::Accept`](super::OpenInput) goes ahead all the same).
 /// - [`OffsetError::Empty`]: shrinking leaves nothing.
 /// - [`OffsetError::Memory`]: the band would not fit.
-/// - [`OffsetError::CoarseCoordinates`], [`OffsetError::TooManyEdges`],
-///   [`OffsetError::TooManyVertices`]: the lattice is too fine for the precision or the indices.
+/// - [`OffsetError::Lattice`]: the lattice is too fine for the precision or the indices.
 /// - [`OffsetError::Vdb`]: OpenVDB cannot hold the band that was to be kept.
 /// - [`OffsetError::Cancelled`].
 pub fn offset(

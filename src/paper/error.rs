@@ -1,8 +1,8 @@
 //! Why a table could not be measured.
 
 use crate::contour::ContourError;
-use crate::edge::TooManyEdges;
 use crate::io::LoadError;
+use crate::lattice::LatticeError;
 use crate::offset::{OffsetError, SettingsError};
 use crate::run::Cancelled;
 use crate::verify::VerifyError;
@@ -55,8 +55,8 @@ impl From<SettingsError> for PaperError {
     }
 }
 
-impl From<TooManyEdges> for PaperError {
-    fn from(error: TooManyEdges) -> Self {
+impl From<LatticeError> for PaperError {
+    fn from(error: LatticeError) -> Self {
         OffsetError::from(error).into()
     }
 }

@@ -1,7 +1,7 @@
 //! Why a patch cannot be thickened.
 
-use crate::contour::{ContourError, Precision};
-use crate::edge::TooManyEdges;
+use crate::contour::ContourError;
+use crate::lattice::LatticeError;
 use crate::mesh::{LENGTHS, MeshError};
 use crate::offset::{MemoryError, OffsetError};
 use crate::run::Cancelled;
@@ -33,25 +33,9 @@ pub enum ThickenError {
     /// The work would not fit into memory.
     #[error(transparent)]
     Memory(#[from] MemoryError),
-    /// The solid's boundary crosses more lattice edges than 32-bit numbers can count.
+    /// The lattice is too fine for the indices or the precision.
     #[error(transparent)]
-    TooManyEdges(#[from] TooManyEdges),
-    /// The result has more vertices than 32-bit numbers can count.
-    #[error("the result has more than 4294967295 vertices; choose a larger voxel size")]
-    TooManyVertices,
-    /// The coordinates of the chosen precision are too coarse for the voxel size.
-    #[error(
-        "coordinates of size {far} are too coarse in {precision:?} for voxels of size {voxel}; \
-         choose 64-bit coordinates, larger voxels, or move the model to the origin"
-    )]
-    CoarseCoordinates {
-        /// The largest coordinate, in model units.
-        far: f64,
-        /// The voxel size, in model units.
-        voxel: f64,
-        /// The precision that was asked for.
-        precision: Precision,
-    },
+    Lattice(#[from] LatticeError),
     /// The offset that a closed patch needs cannot be made.
     #[error(transparent)]
     Offset(OffsetError),
@@ -77,11 +61,7 @@ impl From<OffsetError> for ThickenError {
         match error {
             OffsetError::Cancelled => ThickenError::Cancelled,
             OffsetError::Memory(error) => ThickenError::Memory(error),
-            OffsetError::TooManyEdges(error) => ThickenError::TooManyEdges(error),
-            OffsetError::TooManyVertices => ThickenError::TooManyVertices,
-            OffsetError::CoarseCoordinates { far, voxel, precision } => {
-                ThickenError::CoarseCoordinates { far, voxel, precision }
-            }
+            OffsetError::Lattice(error) => ThickenError::Lattice(error),
             other => ThickenError::Offset(other),
         }
     }

@@ -31,8 +31,7 @@ pub struct ThickenResult {
 ///   itself.
 /// - [`ThickenError::Obstacle`]: no lattice was fine enough for a place of the patch.
 /// - [`ThickenError::Memory`]: the lattice would not fit.
-/// - [`ThickenError::TooManyEdges`], [`ThickenError::TooManyVertices`],
-///   [`ThickenError::CoarseCoordinates`]: the lattice is too fine for the indices or the precision.
+/// - [`ThickenError::Lattice`]: the lattice is too fine for the indices or the precision.
 /// - [`ThickenError::Offset`]: the offset of a closed patch cannot be made.
 /// - [`ThickenError::Cancelled`].
 pub fn thicken(

@@ -6,8 +6,8 @@
 use super::case_table::{CaseId, CaseTable, FaceChoice};
 use super::corner_signs::CornerSigns;
 use crate::band::{LeafId, SignField};
-use crate::contour::error::{ContourError, TooManyVertices};
-use crate::lattice::{LeafMask, bits};
+use crate::contour::error::ContourError;
+use crate::lattice::{LatticeError, LeafMask, bits};
 use crate::run::{RunSettings, SHARE};
 use rayon::prelude::*;
 
@@ -78,7 +78,9 @@ impl CellNumbers {
         for leaf in &mut leaves {
             let next = (cells.checked_add(leaf.first_cell), vertices.checked_add(leaf.first_vertex));
             (leaf.first_cell, leaf.first_vertex) = (cells, vertices);
-            let (Some(next_cells), Some(next_vertices)) = next else { return Err(TooManyVertices.into()) };
+            let (Some(next_cells), Some(next_vertices)) = next else {
+                return Err(LatticeError::TooManyVertices.into());
+            };
             (cells, vertices) = (next_cells, next_vertices);
         }
         Ok(CellNumbers { leaves, cells, vertices })

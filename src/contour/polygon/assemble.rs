@@ -3,12 +3,13 @@
 use super::edge_polygon::{EdgePolygon, for_polygons, on_axis};
 use super::triangulate::{Fit, Split, triangulate_polygon};
 use crate::band::LeafId;
-use crate::contour::error::{ContourError, TooManyVertices};
+use crate::contour::error::ContourError;
 use crate::contour::feature::SurfaceProbe;
 use crate::contour::mesh::{AXIS_STRIDE, LeafMesh, TriangleBuffer, TriangleSlots, VertexRun, split_slices};
 use crate::contour::settings::DiagonalTest;
 use crate::contour::statistics::ContourStatistics;
 use crate::contour::vertex::{Cells, FaceVertices, is_missing};
+use crate::lattice::LatticeError;
 use crate::mesh::TriMesh;
 use crate::run::{Cancelled, PhaseGuard, SHARE};
 use glam::DVec3;
@@ -78,7 +79,7 @@ pub fn triangulate(
     let edge_vertices: usize = outputs.iter().map(|o| o.edge_vertices.len()).sum();
     // The largest number stands for no vertex elsewhere.
     if (vertices.len() + edge_vertices) as u64 >= u64::from(u32::MAX) {
-        return Err(TooManyVertices.into());
+        return Err(LatticeError::TooManyVertices.into());
     }
     let shared = vertices.len() as u32;
     vertices.reserve_exact(edge_vertices);

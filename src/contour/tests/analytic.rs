@@ -2,7 +2,7 @@
 
 use crate::contour::tests::fields::{Implicit, run, sample};
 use crate::contour::{ContourError, ContourSettings, Precision, contour};
-use crate::lattice::Lattice;
+use crate::lattice::{Lattice, LatticeError};
 use crate::mesh::TriMesh;
 use crate::run::RunSettings;
 use crate::verify::tests::audit::audit;
@@ -247,7 +247,7 @@ fn stops_when_cancelled_and_when_too_far() {
     });
     let run = RunSettings::with_threads(1).unwrap();
     let result = contour(&far, &crossings, Lattice { voxel: 0.1 }, None, &settings, &run);
-    assert!(matches!(result, Err(ContourError::TooFarFromOrigin { .. })));
+    assert!(matches!(result, Err(ContourError::Lattice(LatticeError::CoarseCoordinates { .. }))));
     assert!(result.unwrap_err().to_string().contains("64-bit"));
     let wide = ContourSettings { precision: Precision::F64, ..ContourSettings::default() };
     assert!(contour(&far, &crossings, Lattice { voxel: 0.1 }, None, &wide, &run).is_ok());

@@ -17,11 +17,11 @@ use super::cell_vertex::is_missing;
 use super::cells::Cells;
 use crate::band::{LeafId, SignField};
 use crate::contour::cell::{Case, CellId, CellNumbers, Corner, Edge, Face, Pair, locate};
-use crate::contour::error::{ContourError, TooManyVertices};
+use crate::contour::error::ContourError;
 use crate::contour::rounded_lattice::RoundedLattice;
 use crate::edge::Crossings;
 use crate::geom::predicates::orient3d;
-use crate::lattice::{Axis, Ijk, LEAF_DIM, bits};
+use crate::lattice::{Axis, Ijk, LEAF_DIM, LatticeError, bits};
 use crate::run::{Cancelled, RunSettings, SHARE};
 use rayon::prelude::*;
 
@@ -95,7 +95,7 @@ pub fn face_vertices(
     let mut first = Vec::with_capacity(cells.context.signs.len() + 1);
     let (mut marks, mut positions) = (Vec::new(), Vec::new());
     let next = |positions: &Vec<_>| {
-        u32::try_from(first_of_all + positions.len() as u64).map_err(|_| TooManyVertices)
+        u32::try_from(first_of_all + positions.len() as u64).map_err(|_| LatticeError::TooManyVertices)
     };
     for ((of_leaf, in_leaf), leaf) in per_leaf.into_iter().zip(leaves) {
         // For the leaves before that have none, too.
