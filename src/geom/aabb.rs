@@ -41,3 +41,16 @@ impl Aabb {
         self.size().length()
     }
 }
+
+/// Whether two closed boxes have a point in common, each given by its lowest and its highest
+/// coordinates.
+#[inline(always)]
+pub fn boxes_meet<T: PartialOrd>([lo, hi]: [&[T; 3]; 2], [other_lo, other_hi]: [&[T; 3]; 2]) -> bool {
+    // No short cuts: six comparisons side by side are faster than branches.
+    (lo[0] <= other_hi[0])
+        & (other_lo[0] <= hi[0])
+        & (lo[1] <= other_hi[1])
+        & (other_lo[1] <= hi[1])
+        & (lo[2] <= other_hi[2])
+        & (other_lo[2] <= hi[2])
+}

@@ -6,6 +6,7 @@
 //! The swept sphere volumes of `ssvh` fit tighter but take ten times as long to build. Touching
 //! triangles need closed boxes without slack.
 
+use super::aabb::boxes_meet;
 use crate::geom::aabb::Aabb;
 use crate::run::{Cancelled, RunSettings};
 use glam::DVec3;
@@ -49,13 +50,7 @@ impl Box32 {
     /// Whether the boxes have a point in common.
     #[inline(always)]
     fn meets(&self, other: &Box32) -> bool {
-        // No short cuts: six comparisons side by side are faster than branches.
-        (self.lo[0] <= other.hi[0])
-            & (other.lo[0] <= self.hi[0])
-            & (self.lo[1] <= other.hi[1])
-            & (other.lo[1] <= self.hi[1])
-            & (self.lo[2] <= other.hi[2])
-            & (other.lo[2] <= self.hi[2])
+        boxes_meet([&self.lo, &self.hi], [&other.lo, &other.hi])
     }
 }
 
