@@ -1,5 +1,6 @@
 //! Numbers as users write them, and as users read them.
 
+pub(super) use exocarp::internals::compare::grouped;
 use std::num::NonZeroUsize;
 
 /// A positive voxel size in model units.
@@ -51,19 +52,6 @@ fn finite(text: &str) -> Result<f64, String> {
         Ok(_) => Err("the number is not finite".into()),
         Err(_) => Err("this is not a number, nor one with % behind it".into()),
     }
-}
-
-/// `1234567` as `1,234,567`.
-pub(super) fn grouped(n: u64) -> String {
-    let digits = n.to_string();
-    let mut text = String::new();
-    for (i, c) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(c);
-    }
-    text
 }
 
 /// `1 triangle`, `2 triangles`.

@@ -28,7 +28,7 @@ pub use error::CompareError;
 pub use measurement::{Measurement, PhaseTime, median};
 pub use method::{Method, Needs};
 pub use process::{Lost, Programs, WORKER, measure, probe_meshlib, worker_arguments};
-pub use table::{Column, Row, rows, text};
+pub use table::{Column, Row, grouped, rows, text};
 pub use worker::{Job, work};
 
 use crate::io::{self, SaveOptions};

@@ -243,9 +243,14 @@ pub(super) fn error(x: f64) -> String {
     }
 }
 
-/// `1234567` as `1,234,567`.
+/// A count as text, `1234567.0` as `1,234,567`.
 pub(super) fn count(n: f64) -> String {
-    let digits = format!("{n:.0}");
+    grouped(n.round_ties_even() as u64)
+}
+
+/// Returns a number with commas: `1234567` as `1,234,567`.
+pub fn grouped(n: u64) -> String {
+    let digits = n.to_string();
     let mut text = String::new();
     for (i, c) in digits.chars().enumerate() {
         if i > 0 && (digits.len() - i).is_multiple_of(3) {
