@@ -222,7 +222,7 @@ pub use mesh::{CleanReport, MeshChunk, MeshError, TriMesh, clean, shapes};
 pub use offset::{BandOptions, BandResult, offset_band};
 pub use offset::{
     EmptyResult, InputError, MemoryError, MeshSink, OffsetError, OffsetResult, OffsetSettings,
-    OffsetStatistics, OpenInput, Partition, SettingsError, SinkError, StreamResult, offset, offset_streamed,
+    OffsetStatistics, OpenInput, Partition, SettingsError, StreamResult, offset, offset_streamed,
 };
 pub use quantity::{Length, ParseQuantityError, Precision, TileIndex, Tolerance, VoxelSize};
 pub use run::{CancelToken, Cancelled, Phase, Progress, RunSettings, ThreadError};

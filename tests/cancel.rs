@@ -3,9 +3,10 @@
 use exocarp::verify::{VerifyError, VerifySettings, verify};
 use exocarp::{
     BandOptions, CancelToken, Length, MeshChunk, MeshSink, OffsetError, OffsetSettings, Partition, Phase,
-    Progress, RunSettings, SinkError, ThickenError, ThickenSettings, TileIndex, TriMesh, VoxelSize, offset,
-    offset_band, offset_streamed, shapes, thicken,
+    Progress, RunSettings, ThickenError, ThickenSettings, TileIndex, TriMesh, VoxelSize, offset, offset_band,
+    offset_streamed, shapes, thicken,
 };
+use std::error::Error;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -76,11 +77,11 @@ fn is_cancelled(error: &OffsetError) -> bool {
 struct Nowhere;
 
 impl MeshSink for Nowhere {
-    fn restart(&mut self) -> Result<(), SinkError> {
+    fn restart(&mut self) -> Result<(), Box<dyn Error + Send + Sync>> {
         Ok(())
     }
 
-    fn chunk(&mut self, _chunk: &MeshChunk) -> Result<(), SinkError> {
+    fn chunk(&mut self, _chunk: &MeshChunk) -> Result<(), Box<dyn Error + Send + Sync>> {
         Ok(())
     }
 }
@@ -116,10 +117,10 @@ fn a_receiver_that_is_cancelled_cancels_the_run() {
     /// A receiver whose own work was cancelled.
     struct Cancelled;
     impl MeshSink for Cancelled {
-        fn restart(&mut self) -> Result<(), SinkError> {
+        fn restart(&mut self) -> Result<(), Box<dyn Error + Send + Sync>> {
             Ok(())
         }
-        fn chunk(&mut self, _chunk: &MeshChunk) -> Result<(), SinkError> {
+        fn chunk(&mut self, _chunk: &MeshChunk) -> Result<(), Box<dyn Error + Send + Sync>> {
             Err(exocarp::Cancelled.into())
         }
     }

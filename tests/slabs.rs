@@ -4,9 +4,10 @@ use exocarp::internals::lattice::LEAF_SIZE;
 use exocarp::vdb::Band;
 use exocarp::{
     BandOptions, Length, MeshChunk, MeshSink, OffsetError, OffsetResult, OffsetSettings, OpenInput,
-    Partition, Precision, RunSettings, SinkError, StreamResult, TileIndex, Tolerance, TriMesh, VoxelSize,
-    offset, offset_streamed, shapes,
+    Partition, Precision, RunSettings, StreamResult, TileIndex, Tolerance, TriMesh, VoxelSize, offset,
+    offset_streamed, shapes,
 };
+use std::error::Error;
 
 fn run() -> RunSettings {
     RunSettings::with_threads(2).unwrap()
@@ -17,12 +18,12 @@ fn run() -> RunSettings {
 struct Gathered(TriMesh);
 
 impl MeshSink for Gathered {
-    fn restart(&mut self) -> Result<(), SinkError> {
+    fn restart(&mut self) -> Result<(), Box<dyn Error + Send + Sync>> {
         self.0 = TriMesh::default();
         Ok(())
     }
 
-    fn chunk(&mut self, chunk: &MeshChunk) -> Result<(), SinkError> {
+    fn chunk(&mut self, chunk: &MeshChunk) -> Result<(), Box<dyn Error + Send + Sync>> {
         // Of a tile, only the numbers beside one another count.
         let first = self.0.vertices.len() as i64 - chunk.first_vertex() as i64;
         self.0.vertices.extend_from_slice(chunk.vertices());
@@ -125,11 +126,11 @@ fn slabs_one_after_the_other_give_the_whole() {
 struct Continued<'a>(&'a mut Gathered);
 
 impl MeshSink for Continued<'_> {
-    fn restart(&mut self) -> Result<(), SinkError> {
+    fn restart(&mut self) -> Result<(), Box<dyn Error + Send + Sync>> {
         Ok(())
     }
 
-    fn chunk(&mut self, chunk: &MeshChunk) -> Result<(), SinkError> {
+    fn chunk(&mut self, chunk: &MeshChunk) -> Result<(), Box<dyn Error + Send + Sync>> {
         self.0.chunk(chunk)
     }
 }

@@ -9,8 +9,9 @@ use exocarp::io::{Format, MeshStream, SaveError, Tile, save_tile};
 use exocarp::vdb::Band;
 use exocarp::{
     BandResult, MeshChunk, MeshSink, OffsetError, OffsetResult, OffsetSettings, OffsetStatistics, Partition,
-    SinkError, StreamResult, TileIndex, TriMesh, offset, offset_band, offset_streamed,
+    StreamResult, TileIndex, TriMesh, offset, offset_band, offset_streamed,
 };
+use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -149,11 +150,11 @@ struct TimedStream {
 }
 
 impl MeshSink for TimedStream {
-    fn restart(&mut self) -> Result<(), SinkError> {
+    fn restart(&mut self) -> Result<(), Box<dyn Error + Send + Sync>> {
         self.stream.restart()
     }
 
-    fn chunk(&mut self, chunk: &MeshChunk) -> Result<(), SinkError> {
+    fn chunk(&mut self, chunk: &MeshChunk) -> Result<(), Box<dyn Error + Send + Sync>> {
         let started = Instant::now();
         self.stream.chunk(chunk)?;
         self.seconds += started.elapsed().as_secs_f64();
@@ -170,12 +171,12 @@ struct TileFile {
 }
 
 impl MeshSink for TileFile {
-    fn restart(&mut self) -> Result<(), SinkError> {
+    fn restart(&mut self) -> Result<(), Box<dyn Error + Send + Sync>> {
         // A tile that the surface does not pass is a file without triangles.
         self.chunk(&MeshChunk::empty())
     }
 
-    fn chunk(&mut self, chunk: &MeshChunk) -> Result<(), SinkError> {
+    fn chunk(&mut self, chunk: &MeshChunk) -> Result<(), Box<dyn Error + Send + Sync>> {
         let started = Instant::now();
         save_tile(&self.path, chunk, self.tile, precision(self.f64))?;
         self.seconds += started.elapsed().as_secs_f64();

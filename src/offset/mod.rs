@@ -42,4 +42,4 @@ pub use result::{OffsetResult, StreamResult};
 pub use settings::BandOptions;
 pub use settings::{OffsetSettings, OpenInput, SettingsError};
 pub use statistics::{EngineTimes, OffsetStatistics, VdbStatistics};
-pub use stream::{MeshSink, Partition, SinkError, offset_streamed};
+pub use stream::{MeshSink, Partition, offset_streamed};

@@ -17,6 +17,7 @@ use crate::mesh::{MeshChunk, TriMesh};
 use crate::quantity::TileIndex;
 use crate::run::{Cancelled, RunSettings};
 use crate::subvoxel::{MissedCandidates, MissedFeatures};
+use std::error::Error;
 use std::time::Instant;
 
 /// The way in which the lattice is divided into slabs.
@@ -28,9 +29,6 @@ pub enum Partition {
     Tile(TileIndex),
 }
 
-/// The error of a receiver of a streamed mesh.
-pub type SinkError = Box<dyn std::error::Error + Send + Sync>;
-
 /// A receiver of the chunks of a streamed mesh, in their order.
 pub trait MeshSink {
     /// Forgets all chunks: they come again on a finer lattice. Called once before the first chunk,
@@ -38,21 +36,21 @@ pub trait MeshSink {
     ///
     /// # Errors
     /// Whatever ends the run.
-    fn restart(&mut self) -> Result<(), SinkError>;
+    fn restart(&mut self) -> Result<(), Box<dyn Error + Send + Sync>>;
 
     /// Takes the next chunk. Its vertices and triangles follow those of the chunk before.
     ///
     /// # Errors
     /// Whatever ends the run.
-    fn chunk(&mut self, chunk: &MeshChunk) -> Result<(), SinkError>;
+    fn chunk(&mut self, chunk: &MeshChunk) -> Result<(), Box<dyn Error + Send + Sync>>;
 }
 
 impl MeshSink for MeshStream {
-    fn restart(&mut self) -> Result<(), SinkError> {
+    fn restart(&mut self) -> Result<(), Box<dyn Error + Send + Sync>> {
         Ok(self.clear()?)
     }
 
-    fn chunk(&mut self, chunk: &MeshChunk) -> Result<(), SinkError> {
+    fn chunk(&mut self, chunk: &MeshChunk) -> Result<(), Box<dyn Error + Send + Sync>> {
         Ok(self.append(chunk)?)
     }
 }
@@ -124,7 +122,7 @@ pub fn offset_streamed(
 }
 
 /// Converts the error of a sink: one that was cancelled has cancelled the run.
-fn sink_error(error: SinkError) -> OffsetError {
+fn sink_error(error: Box<dyn Error + Send + Sync>) -> OffsetError {
     if error.is::<Cancelled>() { OffsetError::Cancelled } else { OffsetError::Sink(error) }
 }
 
